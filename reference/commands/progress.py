@@ -1,129 +1,245 @@
-"""Progress of long work, on stderr: bars on a terminal; elsewhere one line if it takes long."""
+"""Progress of long work, on stderr: a bar on a terminal, elsewhere a line now and then.
+
+The remaining time follows from the rate of the last seconds, because work often starts slowly: code is
+compiled, processes begin, a first part is measured.
+"""
 
 from __future__ import annotations
 
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
-from typing import Any, Protocol
+from operator import attrgetter
+from typing import Any, NamedTuple, Protocol
 
 import typer
 
 from ..plain_text import plain, terminal_of
-from ..system.machine_code import announced_to
+from ..system.channel import ACTIVITY, ANNOUNCEMENTS
 
-_NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
-_MEASURED_S = 5.0  # shortest time from which the rest is estimated
-_ENOUGH = 0.02  # part of the work that is done before the rest is estimated
-_LATEST_S = 60.0  # time after which it is estimated from less
+WINDOW_S = 5.0  # the rate is measured over the last seconds
+LEAST_S = 2.0  # shortest time over which a rate is measured
+NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
+NEXT_NOTICE = 2.0  # each later notice comes after this factor of time
 
 
-class _Move(Protocol):
+class Move(Protocol):
     """Moves a piece of work on."""
 
     def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
-        """Report the part done, the whole if it was not known before, and what is done now."""
+        """Say how much is done, the total if it was unknown before, and what is being done."""
 
 
 class Show(Protocol):
     """Begins a piece of work."""
 
-    def __call__(self, label: str, total: float = 0, unit: str = "s simulated") -> _Move:
+    def __call__(self, label: str, total: float = 0, unit: str = "s") -> Move:
         """Return the function that moves the work on, which is counted in units up to a total."""
+
+
+class _Sample(NamedTuple):
+    """How much was done at a time in s."""
+
+    time_s: float
+    completed: float
+
+
+class Work:
+    """A piece of work: how much of it is done, what is being done, and how long it will still take.
+
+    Args:
+        label: what the work is.
+        total: how much of it there is, in `unit`.
+        unit: unit of completed and total.
+    """
+
+    def __init__(self, label: str, total: float = 0, unit: str = "s") -> None:
+        self.label = label
+        self.total = total
+        self.unit = unit
+        self.activity = ""
+        self.begun_s = time.monotonic()
+        self._samples: deque[_Sample] = deque()
+
+    def move(self, completed: float, total: float | None = None, item: str = "") -> None:
+        """Note how much is done, the total if it was unknown before, and what is being done."""
+        if total is not None:
+            self.total = total
+        if item:
+            self.activity = item
+        if completed < self.completed:  # it started again, in a higher precision
+            self._samples.clear()
+        self._samples.append(_Sample(time.monotonic(), completed))
+        while len(self._samples) > 2 and self._samples[1].time_s <= self._last.time_s - WINDOW_S:
+            self._samples.popleft()
+
+    @property
+    def completed(self) -> float:
+        """How much is done."""
+        return self._last.completed if self._samples else 0.0
+
+    @property
+    def elapsed_s(self) -> float:
+        """The time since the work began."""
+        return time.monotonic() - self.begun_s
+
+    @property
+    def counted(self) -> str:
+        """How much is done: a part of the simulated time in per cent, or so many of so many."""
+        if self.unit == "s":
+            percent = 100 * self.completed / self.total if self.total else 0.0
+            return f"{percent:.0f} % of {_rough(self.total)} s"
+        return f"{_rough(self.completed)} of {_rough(self.total)} {self.unit}"
+
+    @property
+    def description(self) -> str:
+        """The label, and what is being done."""
+        return plain(f"{self.label}: {self.activity}" if self.activity else self.label)
+
+    @property
+    def _last(self) -> _Sample:
+        return self._samples[-1]
+
+    def remaining_s(self) -> float | None:
+        """Return the expected remaining time in s; None until a rate can be measured."""
+        if len(self._samples) < 2:
+            return None
+        first = self._samples[0]
+        done = self._last.completed - first.completed
+        measured_s = self._last.time_s - first.time_s
+        waited_s = time.monotonic() - self._last.time_s
+        if done <= 0 or measured_s + waited_s < LEAST_S:
+            return None
+        units_left = self.total - self._last.completed
+        if waited_s > measured_s:  # it has become slower
+            return units_left * (measured_s + waited_s) / done
+        return max(0.0, units_left * measured_s / done - waited_s)
+
+    def remaining(self) -> str:
+        """Return the expected remaining time in words; empty until a rate can be measured."""
+        seconds = self.remaining_s()
+        return "" if seconds is None else f"about {in_words(seconds)} left"
 
 
 @contextmanager
 def progress() -> Iterator[Show]:
-    """Yield the function that begins a piece of work, shown on stderr from its first move on."""
+    """Yield the function that begins a piece of work, which is shown on stderr."""
     if not sys.stderr.isatty():
-        with announced_to(partial(typer.echo, err=True)):
-            yield notice
+        with _as_lines() as show:
+            yield show
         return
+    with _as_bars() as show:
+        yield show
+
+
+@contextmanager
+def _as_lines() -> Iterator[Show]:
+    """Show long work by lines: the first after twenty seconds, the next after forty, and so on."""
+    current: list[Work] = []
+
+    def show(label: str, total: float = 0, unit: str = "s") -> Move:
+        work = Work(label, total, unit)
+        current[:] = [work]
+        return partial(_noticed, work, _Notices())
+
+    def hear(text: str) -> None:
+        for work in current:
+            work.activity = text
+
+    with ANNOUNCEMENTS.heard_by(partial(typer.echo, err=True)), ACTIVITY.heard_by(hear):
+        yield show
+
+
+class _Notices:
+    """When the next line is due, in s since the work began."""
+
+    def __init__(self) -> None:
+        self.next_s = NOTICE_S
+
+    def is_due(self, elapsed_s: float) -> bool:
+        """Return whether a line is due; if so, the next one comes later."""
+        if elapsed_s <= self.next_s:
+            return False
+        self.next_s = NEXT_NOTICE * elapsed_s
+        return True
+
+
+def _noticed(
+    work: Work,
+    notices: _Notices,
+    completed: float,
+    total: float | None = None,
+    item: str = "",
+) -> None:
+    """Move a piece of work on, and print a line if one is due."""
+    work.move(completed, total, item)
+    remaining = work.remaining()
+    if not remaining or work.completed >= work.total or not notices.is_due(work.elapsed_s):
+        return
+    line = f"{work.description}: {remaining}, {work.counted} after {work.elapsed_s:.0f} s"
+    typer.echo(line, err=True)
+
+
+@contextmanager
+def _as_bars() -> Iterator[Show]:
+    """Show work by bars, which are drawn ten times a second and go when the work is done."""
     from rich.console import Console  # takes a tenth of a second
     from rich.progress import (
         BarColumn,
         Progress,
-        TextColumn,
+        ProgressColumn,
+        SpinnerColumn,
         TimeElapsedColumn,
-        TimeRemainingColumn,
     )
+    from rich.text import Text
+
+    class WorkColumn(ProgressColumn):
+        """A text that a piece of work gives about itself."""
+
+        def __init__(self, text_of: Callable[[Work], str]) -> None:
+            super().__init__()
+            self._text_of = text_of
+
+        def render(self, task: Any) -> Text:
+            return Text(self._text_of(task.fields["work"]))
 
     console = Console(file=terminal_of(sys.stderr))
-    columns = (
-        TextColumn("{task.description}", markup=False),
+    bars = Progress(
+        SpinnerColumn(),
+        WorkColumn(attrgetter("description")),
         BarColumn(),
-        TextColumn("{task.completed:,.0f} of {task.total:,.0f} {task.fields[unit]}"),
+        WorkColumn(attrgetter("counted")),
         TimeElapsedColumn(),
-        TimeRemainingColumn(),
+        WorkColumn(Work.remaining),
+        console=console,
+        transient=True,
     )
-    with (
-        Progress(*columns, console=console, transient=True) as bars,
-        announced_to(partial(bars.console.print, markup=False, highlight=False)),
-    ):
-        yield partial(_bar, bars)
 
+    def show(label: str, total: float = 0, unit: str = "s") -> Move:
+        work = Work(label, total, unit)
+        task = bars.add_task("", total=total, work=work)
 
-def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> _Move:
-    """Return the function that moves a bar; it appears at its first move and goes when full."""
-    task = bars.add_task(label, total=total, unit=unit, visible=False, start=False)
+        def move(completed: float, total: float | None = None, item: str = "") -> None:
+            work.move(completed, total, item)
+            bars.update(task, completed=completed, total=work.total, visible=completed < work.total)
 
-    def move(completed: float, total: float | None = None, item: str = "") -> None:
-        bars.start_task(task)
-        text = plain(f"{label}: {item}" if item else label)
-        whole = bars.tasks[task].total if total is None else total
-        bars.update(
-            task, completed=completed, total=whole, description=text, visible=completed < whole
-        )
+        return move
 
-    return move
+    def hear(text: str) -> None:
+        for task in bars.tasks:
+            if task.visible:
+                task.fields["work"].activity = text
 
-
-def notice(label: str, total: float = 0, unit: str = "s simulated") -> _Move:
-    """Return the function that moves a piece of work on.
-
-    If the work takes long, it prints once how long it will take.
-
-    Args:
-        label: what is done.
-        total: how much of it there is, in `unit`.
-        unit: of completed and total.
-    """
-    begun_s = time.monotonic()
-    known_total = total
-    noticed = False
-    last_completed = 0.0
-    # time and part done at the first move, also of a second try
-    first: tuple[float, float] | None = None
-
-    def move(completed: float, total: float | None = None, item: str = "") -> None:
-        nonlocal first, last_completed, noticed
-        now_s = time.monotonic()
-        if total is None:
-            total = known_total
-        if first is None or completed < last_completed:
-            first = now_s, completed
-        last_completed = completed
-        since_s, done = first
-        elapsed_s = now_s - begun_s
-        measured_s = now_s - since_s
-        if noticed or elapsed_s <= _NOTICE_S or measured_s < _MEASURED_S or completed <= done:
-            return
-        if completed - done < _ENOUGH * (total - done) and elapsed_s <= _LATEST_S:
-            return
-
-        noticed = True
-        whole_s = elapsed_s + (total - completed) * measured_s / (completed - done)
-        counted = f"{_rough(completed)} of {_rough(total)} {unit} after {elapsed_s:.0f} s"
-        typer.echo(f"{label}: about {in_words(whole_s)}: {counted}", err=True)
-
-    return move
+    announce = partial(console.print, markup=False, highlight=False)
+    with bars, ANNOUNCEMENTS.heard_by(announce), ACTIVITY.heard_by(hear):
+        yield show
 
 
 def _rough(amount: float) -> str:
-    """Return an amount in two digits, or as a whole number."""
     return f"{amount:,.0f}" if amount >= 10 else f"{amount:.2g}"
 
 
@@ -135,6 +251,6 @@ def in_words(seconds: float) -> str:
         ("hours", 3600, 172800),
         ("days", 86400, math.inf),
     )
-    unit, length_s = next((unit, length) for unit, length, until in scales if seconds < until)
-    amount = float(f"{seconds / length_s:.2g}")
-    return f"{amount:g} {unit}"
+    unit, length = next((unit, length) for unit, length, until in scales if seconds < until)
+    two_digits = float(f"{seconds / length:.2g}")
+    return f"{two_digits:g} {unit}"

@@ -14,6 +14,7 @@ from time import process_time
 from typing import Any
 
 from ..errors import FoucaultError, InputError
+from ..system.channel import ACTIVITY
 from ..system.workers import Emit, Worker, usable_cores
 from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
@@ -102,6 +103,7 @@ def run_both(
     second_s = expected_s(second, steps)
     pays = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= _COMPILATION_S
     end = float(first.times[-1])
+    ACTIVITY.send("integrating")
     with in_background(pays, send_run, second) as background:
         first_report = report and (lambda t: report((t + background.reached) / 2))
         first_run = run(first, first_report)
@@ -167,6 +169,11 @@ class Background:
         """Whether another process is at work."""
         return self._here is None and not self._result.done()
 
+    @property
+    def finished(self) -> bool:
+        """Whether the result, or an error, is there."""
+        return self._result.done()
+
     def result(self, report: Report | None = None) -> Any:
         """Wait for the result and return it; `report` is called with the simulated time meanwhile.
 
@@ -195,13 +202,3 @@ class Background:
                 self._take(worker.receive())
         except FoucaultError as error:
             self._result.set_exception(error)
-
-
-def slowest(report: Report, background: list[Background]) -> Report:
-    """Return a report of the time that the caller and all work in the background have reached."""
-
-    def report_slowest(t: float) -> None:
-        reached = [work.reached for work in background if work.at_work]
-        report(min([t, *reached]))
-
-    return report_slowest

@@ -11,7 +11,6 @@ last digit, and the run has to agree as closely as a whole one.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import replace
 from fractions import Fraction
@@ -22,13 +21,12 @@ from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import (
     WORTH_A_PROCESS,
-    Background,
     expected_s,
+    fastest,
     in_background,
     reports,
     run,
     send_run,
-    slowest,
 )
 from ..errors import IntegrationError
 from ..numbers.precision import LONG_DOUBLE
@@ -43,10 +41,16 @@ from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, proved
 from .request import SolveRequest
 from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
+from .workload import Workload
 
 # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 _AUDIT_STEPS = 2000
 _LOWER = 5  # priority of that process, in steps of `nice`
+# parts of the work, as its progress names them
+_PROVING = "proving"
+_AUDITING = "auditing"
+_CONFIRMING = "confirming"
+_SEEING = "looking for transits"
 _WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
 
 
@@ -80,27 +84,53 @@ def solve_enclosed(request: SolveRequest) -> Solution:
 
     with ExitStack() as background:
         plan = None if confirm == "none" else _confirming_plan(task, confirm)
+        workload = _workload(request, task, plan, confirm)
         whole_run = second_proof = None
         if plan is not None and confirm == "whole":
             pays = expected_s(plan, pilot.steps) >= WORTH_A_PROCESS
             whole_run = background.enter_context(in_background(pays, send_run, plan))
+            workload.watch(_CONFIRMING, whole_run)
         if options.audit:
             pays = pilot.steps >= _AUDIT_STEPS
             work = in_background(pays, _send_digits, replace(task, function=False))
             second_proof = background.enter_context(work)
+            workload.watch(_AUDITING, second_proof)
 
-        report = _slowest_report(request.report, (whole_run, second_proof))
-        solution = proved(task, enclosure.enclose, report)
+        solution = proved(task, enclosure.enclose, workload.part(_PROVING))
+        workload.finish(_PROVING)
         if plan is not None and confirm == "sampled":  # while the audit goes on
-            solution = confirmed(task, solution, confirm, _sampled(plan, solution, report))
+            witness = _sampled(plan, solution, workload.part(_CONFIRMING))
+            solution = confirmed(task, solution, confirm, witness)
+            workload.finish(_CONFIRMING)
         if second_proof is not None:
-            solution = audited(solution, *second_proof.result(report))
+            solution = audited(solution, *second_proof.result(workload.part(_AUDITING)))
         if whole_run is not None:
-            solution = confirmed(task, solution, confirm, whole_run.result(report))
+            witness = whole_run.result(workload.part(_CONFIRMING))
+            solution = confirmed(task, solution, confirm, witness)
 
         if whole_run is not None and not solution.possible:
             return solution
-        return guarded(solution, pilot)
+        return guarded(solution, pilot, workload.part(_SEEING))
+
+
+def _workload(
+    request: SolveRequest, task: ProofTask, plan: Plan | None, confirm: Confirmation
+) -> Workload:
+    """Return the parts of the work, with their expected CPU seconds."""
+    steps = task.pilot.steps
+    prec = first_prec(task.scene, task.pilot, task.engine)
+    engine = fastest(prec, task.engine, steps, proof=True)
+    proof_s = steps * engine.proof_step_s + engine.expected_s(steps, prec)
+    parts_s = {_PROVING: proof_s}
+    if request.proof.audit:
+        parts_s[_AUDITING] = proof_s
+    if plan is not None:
+        share = Fraction(1, SAMPLED) if confirm == "sampled" else 1
+        parts_s[_CONFIRMING] = expected_s(plan, steps) * float(share)
+    if confirm != "whole":
+        event_run = confirming_plan(task.scene, request.times, task.pilot, LONG_DOUBLE.prec)
+        parts_s[_SEEING] = expected_s(event_run, steps)
+    return Workload(request.report, float(task.scene.exact.t_end), parts_s)
 
 
 def _affordable(confirm: Confirmation, task: ProofTask) -> Confirmation:
@@ -109,13 +139,6 @@ def _affordable(confirm: Confirmation, task: ProofTask) -> Confirmation:
     if confirm == "sampled" and len(drawn_intervals(task.scene)) > task.pilot.steps:
         return "whole"
     return confirm
-
-
-def _slowest_report(report: Report | None, work: Iterable[Background | None]) -> Report | None:
-    """Return a report of the time that this process and work in the background have reached."""
-    if report is None:
-        return None
-    return slowest(report, [child for child in work if child is not None])
 
 
 def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:

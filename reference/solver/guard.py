@@ -11,7 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
-from ..engines.plan import Plan, Run
+from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
 from ..numbers.columns import POSITION, VELOCITY
@@ -29,7 +29,7 @@ _MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would ne
 SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
-def guarded(solution: Solution, pilot: Pilot) -> Solution:
+def guarded(solution: Solution, pilot: Pilot, report: Report | None = None) -> Solution:
     """Have a run with event detection find the zeros of a proved solution.
 
     It is made in the cheapest type that serves.
@@ -54,7 +54,8 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             )
             break
         try:
-            event_run = run(Plan(inputs, "momentum", cheapest_type(prec), solution.times, words))
+            plan = Plan(inputs, "momentum", cheapest_type(prec), solution.times, words)
+            event_run = run(plan, report)
         except (UnreachableError, OverflowError) as error:
             reason = error
             break

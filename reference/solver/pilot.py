@@ -24,6 +24,7 @@ from ..numbers.precision import DOUBLE, LONG_DOUBLE, decimals_for, real
 from ..numbers.table import Table, bits_in, decimals_of, resolved
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
+from ..system.channel import ACTIVITY
 
 _PILOT_PREC = 47  # of the first exact run: three limbs
 PILOT_GAP_BITS = 22  # bits between it and the second: a limb
@@ -146,6 +147,7 @@ def run_pilot(
         UnreachableError: the run takes too many steps, or rounding grows so fast that no affordable
             run keeps a digit.
     """
+    ACTIVITY.send("measuring how errors grow")
     if len(times) <= _LEAST_TIMES:
         times = tuple(times[-1] * k / _LEAST_TIMES for k in range(_LEAST_TIMES + 1))
     pair = _PilotPair(inputs, times, engine, _PILOT_PREC, _PILOT_PREC + PILOT_GAP_BITS)

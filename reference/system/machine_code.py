@@ -8,36 +8,27 @@ load what it has kept.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack, suppress
 from hashlib import sha256
 from pathlib import Path
 from threading import Lock
 from typing import Any, TypeVar
 
+from .channel import ACTIVITY, ANNOUNCEMENTS
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 _HERE = Path(__file__).parent
 _PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
 _declaring = Lock()
-_listeners: list[Callable[[str], None]] = []
 _announced: set[str] = set()
 
 
-@contextmanager
-def announced_to(listener: Callable[[str], None]) -> Iterator[None]:
-    """Have `listener` called with a sentence for each piece of work done for the first time."""
-    _listeners.append(listener)
-    try:
-        yield
-    finally:
-        _listeners.remove(listener)
-
-
 def _announce(what: str, seconds: int) -> None:
-    """Tell the last listener, once in a process, that `what` is compiled in about `seconds`."""
-    if what not in _announced and _listeners:
+    """Announce once in a process that `what` is compiled, and that this takes about `seconds`."""
+    if what not in _announced and ANNOUNCEMENTS.heard:
         _announced.add(what)
-        _listeners[-1](
+        ANNOUNCEMENTS.send(
             f"First use on this machine: {what} are compiled, once, for about {seconds} seconds."
         )
 
@@ -111,6 +102,7 @@ def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
         return
     if kept_variants(function.__name__, folder) <= len(function.signatures):
         _announce(what, seconds)
+        ACTIVITY.send(f"compiling {what}, once")
     with ExitStack() as turn:
         if folder is not None:
             lock = FileLock(Path(folder, f"{function.__name__}.lock"), timeout=_PATIENCE_S)

@@ -16,6 +16,7 @@ from ...errors import IntegrationError
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...numbers.precision import NumberType
+from ...system.channel import ACTIVITY
 from ..plan import Pace, Report
 from .model import RoundedModel
 from .system import system_of
@@ -73,6 +74,7 @@ class Stepper:
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
         equations, xdot = system_of(formulation, self.model.symbols)
+        ACTIVITY.send("compiling")
         started = time.process_time()
         self._ta = self.numbers.integrator(
             equations,
@@ -82,6 +84,7 @@ class Stepper:
         )
         self._ta.pars[:] = self.model.parameters[: len(self._ta.pars)]
         self.compile_s = time.process_time() - started
+        ACTIVITY.send("integrating")
         self.order = int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
 

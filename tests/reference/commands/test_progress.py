@@ -1,10 +1,11 @@
-"""Long work says once how long it will take; short work says nothing."""
+"""Long work says how long it will still take, by the rate of its last seconds; short work says nothing."""
 
 from __future__ import annotations
 
 import pytest
 
-from reference.commands.progress import in_words, notice, progress
+from reference.commands.progress import Work, in_words, progress
+from reference.system.channel import ACTIVITY
 
 
 class Clock:
@@ -24,74 +25,87 @@ def clock(monkeypatch) -> Clock:
     return clock
 
 
-def test_long_work_gets_one_line_and_no_more(clock, capsys):
-    move = notice("creeping", 86400.0)
-    for seconds in range(200):
-        clock.now = 100.0 + seconds
-        move(144.0 * seconds)
+def test_steady_work_is_expected_at_its_rate(clock):
+    work = Work("paris", 100.0)
+    for second in range(11):
+        clock.now = 100.0 + second
+        work.move(float(second))
+    assert work.remaining_s() == pytest.approx(90.0)
+    assert (
+        work.remaining() == "about 90 seconds left" or work.remaining() == "about 1.5 minutes left"
+    )
+
+
+def test_a_slow_start_is_forgotten_after_five_seconds(clock):
+    """Ten seconds for the first per cent, then ten per cent a second."""
+    work = Work("pantheon", 100.0)
+    work.move(0.0)
+    clock.now = 110.0
+    work.move(1.0)
+    for second in range(1, 7):
+        clock.now = 110.0 + second
+        work.move(1.0 + 10.0 * second)
+    assert work.remaining_s() == pytest.approx(3.9)
+
+
+def test_coarse_ticks_count_down_between_them(clock):
+    """A sweep's block every thirty seconds: between two ticks the remaining time goes down with the clock."""
+    work = Work("sweep", 4, "blocks")
+    work.move(0)
+    clock.now = 130.0
+    work.move(1)
+    assert work.remaining_s() == pytest.approx(90.0)
+    clock.now = 150.0
+    assert work.remaining_s() == pytest.approx(70.0)
+    clock.now = 190.0  # it has become slower: one block in ninety seconds
+    assert work.remaining_s() == pytest.approx(3 * 90.0)
+
+
+def test_work_that_starts_again_is_estimated_from_its_new_start(clock):
+    work = Work("hard", 100.0)
+    work.move(0.0)
+    clock.now = 119.0
+    work.move(90.0)
+    clock.now = 121.0
+    work.move(1.0)  # the precision was raised
+    assert work.remaining_s() is None
+    clock.now = 131.0
+    work.move(11.0)
+    assert work.remaining_s() == pytest.approx(89.0)
+
+
+def test_what_was_stored_before_costs_nothing(clock):
+    work = Work("paris", 130, "runs")
+    for done in range(30, 51):
+        work.move(done, item="rk4")
+        clock.now += 1.0
+    assert work.remaining_s() == pytest.approx(80.0 - 1.0)
+    assert (work.description, work.counted) == ("paris: rk4", "50 of 130 runs")
+
+
+def test_a_line_comes_after_twenty_seconds_and_then_at_twice_the_time(clock, capsys):
+    with progress() as show:
+        move = show("creeping", 86400.0)
+        ACTIVITY.send("proving")
+        for second in range(100):
+            clock.now = 100.0 + second
+            move(144.0 * second)
     out, err = capsys.readouterr()
     assert out == ""
-    assert err == "creeping: about 10 minutes: 3,024 of 86,400 s simulated after 21 s\n"
+    assert err.splitlines() == [
+        "creeping: proving: about 9.7 minutes left, 4 % of 86,400 s after 21 s",
+        "creeping: proving: about 9.3 minutes left, 7 % of 86,400 s after 43 s",
+        "creeping: proving: about 8.6 minutes left, 14 % of 86,400 s after 87 s",
+    ]
 
 
-def test_short_work_gets_none(clock, capsys):
-    move = notice("paris", 3600.0)
-    for seconds in range(21):
-        clock.now = 100.0 + seconds
-        move(180.0 * seconds)
-    assert capsys.readouterr().err == ""
-
-
-def test_work_that_begins_late_is_estimated_from_its_own_rate(clock, capsys):
-    """Compilation took 40 s before the first step; then 10 s for a tenth of the way: 90 s remain, 140 s in all."""
-    move = notice("creeping", 100.0)
-    clock.now = 140.0
-    move(0.0)
-    clock.now = 144.0
-    move(4.0)
-    assert capsys.readouterr().err == ""  # too early for an estimate
-    clock.now = 150.0
-    move(10.0)
-    assert (
-        capsys.readouterr().err == "creeping: about 2.3 minutes: 10 of 100 s simulated after 50 s\n"
-    )
-
-
-def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
-    move = notice("hard", 100.0)
-    move(0.0)
-    clock.now = 119.0
-    move(90.0)
-    clock.now = 121.0
-    move(1.0)  # the precision was raised
-    clock.now = 131.0
-    move(11.0)
-    assert capsys.readouterr().err == "hard: about 2 minutes: 11 of 100 s simulated after 31 s\n"
-
-
-def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(clock, capsys):
-    move = notice("creeping", 100.0)
-    for seconds in range(100):
-        clock.now = 100.0 + seconds
-        move(0.004 * seconds)
-    assert (
-        capsys.readouterr().err == "creeping: about 6.9 hours: 0.24 of 100 s simulated after 61 s\n"
-    )
-
-
-def test_runs_are_counted_and_those_that_were_stored_cost_nothing(clock, capsys):
-    move = notice("paris", unit="runs")
-    for done in range(30, 60):
-        move(done, 130, "rk4")
-        clock.now += 1.0
-    assert capsys.readouterr().err == "paris: about 1.7 minutes: 51 of 130 runs after 21 s\n"
-
-
-def test_without_a_terminal_the_notice_is_what_moves(capfd):
+def test_short_work_gets_no_line(clock, capsys):
     with progress() as show:
-        move = show("paris", 60.0)
-        move(30.0)
-    assert capfd.readouterr().err == ""
+        move = show("paris", 3600.0)
+        for second in range(21):
+            clock.now = 100.0 + second
+            move(180.0 * second)
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import shutil
-import time
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-import child
 import pytest
 from forgery import forge
 
@@ -17,14 +15,13 @@ from reference.dataset.files import read_files
 from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
 from reference.engines import AUTO
-from reference.engines.registry import in_background, run, slowest
+from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.scenes.fields import CONFIRMATIONS
 from reference.solver.choice import confirming_plan, first_prec
 from reference.solver.enclosed import confirmed
 from reference.solver.pilot import run_pilot
 from reference.solver.proving import ProofTask
-from reference.system.workers import usable_cores
 
 SHORT = {"t_end": "60", "digits": 18, "level": "enclosed"}
 PARIS = reference.load_scene("paris")
@@ -179,17 +176,3 @@ def test_a_user_gets_an_audit_and_a_sampled_confirmation_unasked(foucault, tmp_p
     )
     assert status == 0 and f"enclosed, confirmation {named.split()[-1]}\n" in out
     assert read_files(tmp_path / "paris").manifest.command.endswith(f" {named} --function")
-
-
-@pytest.mark.skipif(usable_cores() < 2, reason="nothing is done in the background on one core")
-def test_progress_is_that_of_the_slowest_work(tmp_path):
-    told: list[float] = []
-    with in_background(True, child.report_and_wait, 7.0, str(tmp_path / "go_on")) as work:
-        while work.reached < 7.0:
-            time.sleep(0.01)
-        report = slowest(told.append, [work])
-        report(60.0)
-        (tmp_path / "go_on").touch()
-        assert work.result() == "done"
-        report(60.0)
-    assert told == [7.0, 60.0]

@@ -31,7 +31,7 @@ sys.path.insert(0, {str(ROOT)!r})
 from pathlib import Path
 from numba import config
 from callee import slow
-from reference.system.machine_code import announced_to
+from reference.system.channel import ANNOUNCEMENTS
 from reference.system.machine_code import kept, prepare
 
 @kept(*Path(__file__).parent.glob("*.py"), error_model="numpy")
@@ -39,7 +39,7 @@ def successor(x):
     return slow(x)
 
 assert config.CACHE_DIR == sys.argv[1]
-with announced_to(lambda line: print("announced", flush=True)):
+with ANNOUNCEMENTS.heard_by(lambda line: print("announced", flush=True)):
     prepare(successor, "functions", 3, 1)
 assert len(successor.signatures) == 1
 print(successor(41))

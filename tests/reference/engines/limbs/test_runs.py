@@ -217,8 +217,8 @@ def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, ca
 
 
 FIRST_USE = """
-from reference.system.machine_code import announced_to
-with announced_to(lambda line: print("announced")):
+from reference.system.channel import ANNOUNCEMENTS
+with ANNOUNCEMENTS.heard_by(lambda line: print("announced")):
     exec(SHORT)
 """
 
