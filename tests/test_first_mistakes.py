@@ -135,7 +135,7 @@ PYTHON = {
     'reference.trajectory("paris", [0, 1], number="double")': "DOUBLE, LONG_DOUBLE or real(BITS)",
     'reference.load("paris").at("noon")': "times from 0 to 86400 s",
     'reference.load("paris").at(-1)': "The scene ends there: a larger run.t_end solves a longer one.",
-    'compare.judge("paris", ROWS)': "The rows stand before the scene.",
+    'compare.judge("paris", ROWS)': "Write the rows first: judge(rows, scene).",
     'compare.judge(ROWS, "pari")': "Did you mean paris?",
     'compare.judge({"x": [1], "y": [2]}, "paris")': "Wanted: t, x, y",
     'compare.judge({"t": [0, 1], "x": [1], "y": [2, 3]}, "paris")': "of 2 numbers, as t",

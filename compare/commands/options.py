@@ -77,7 +77,7 @@ def numbers(text: str, field: str) -> list[float]:
 
 
 def check_positive(option: str, value: float | None, unit: str = "seconds") -> None:
-    """Refuse a value of an option that is no positive number of some unit; None is none."""
+    """Raise InputError unless the value of an option is positive; None is allowed."""
     if value is not None and not 0 < value < float("inf"):
         raise InputError(option, f"{value:g}", f"a positive number of {unit}")
 

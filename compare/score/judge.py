@@ -169,7 +169,7 @@ def judge_with(
         raise InputError("baseline", baseline, expected)
     if isinstance(scene, Mapping) and "t" in scene:
         got = f"columns {', '.join(map(str, scene))}"
-        raise InputError("scene", got, "a scene", "The rows stand before the scene.")
+        raise InputError("scene", got, "a scene", "Write the rows first: judge(rows, scene).")
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
 
     trial = _trial_of(_candidate_of(candidate, transits, scene), scene, options)

@@ -707,7 +707,7 @@ def test_a_named_model_passes_where_that_is_asked_for():
 
 
 def test_columns_in_the_place_of_the_scene_are_refused():
-    with pytest.raises(InputError, match="The rows stand before the scene"):
+    with pytest.raises(InputError, match=r"Write the rows first: judge\(rows, scene\)"):
         judge("paris", {"t": [0.0], "x": [0.3], "y": [0.4]})
 
 
