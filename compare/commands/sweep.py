@@ -10,7 +10,7 @@ import typer
 
 from reference import InputError, UnreachableError, load_scene
 from reference.commands.options import Conflict, refuse_conflicts
-from reference.commands.progress import progress
+from reference.commands.progress import Move, progress
 from reference.commands.terminal import (
     AsJson,
     Assignments,
@@ -29,6 +29,8 @@ from reference.commands.terminal import (
 )
 from reference.scenes.fields import LEVELS
 from reference.status import Status
+
+from .options import announce
 
 if TYPE_CHECKING:
     from reference import Swept
@@ -122,6 +124,12 @@ def sweep(options: SweepOptions) -> None:
 
         check(request, options.plot)
 
+    if options.scene_word is not None and options.engine is None and options.cluster is None:
+        from reference.sweeps.background import compile_for_the_next
+
+        begun = compile_for_the_next(request)
+        if begun:
+            announce(begun)
     swept = _run(request, options)
     if options.plot is not None:
         from ..report.sweep_report import draw
@@ -173,7 +181,9 @@ def _run(request: Request, options: SweepOptions) -> Swept:
     else:
         kept = f"what is done is in {out}: `foucault sweep --out {out}` goes on"
     with stoppable(kept), progress() as show:
-        move = show(f"sweep of {request.scene.id}", request.table.count, "rows")
+        name = f"sweep of {request.scene.id}"
+        move = show(name, request.table.count, "rows")
+        checks: list[Move] = []
         done = 0
 
         def report(count: int) -> None:
@@ -181,13 +191,16 @@ def _run(request: Request, options: SweepOptions) -> Swept:
             done += count
             move(done)
 
-        return run(request, out, options.workers, options.cluster, report)
+        def report_audit(count: int) -> None:
+            check = checks[0] if checks else show(f"audit of {name}", request.audit, "rows")
+            checks[:] = [check]
+            check(count)
+
+        return run(request, out, options.workers, options.cluster, report, report_audit)
 
 
 def _print(swept: Swept, options: SweepOptions) -> None:
     """Print the sweep as JSON or as text."""
-    from reference.sweeps.request import worth_compiling
-
     from ..report.sweep_report import document, text
 
     if options.as_json:
@@ -196,10 +209,6 @@ def _print(swept: Swept, options: SweepOptions) -> None:
     typer.echo(text(swept, options.out))
     if options.plot is not None:
         typer.echo(f"{options.plot}: the picture")
-    if options.scene_word is not None and options.engine is None:
-        advice = worth_compiling(swept.request)
-        if advice:
-            typer.echo(advice, err=True)
 
 
 def _end(swept: Swept) -> None:

@@ -21,6 +21,7 @@ from typing import Any
 
 from ..engines.registry import batches
 from ..status import Status
+from ..system.channel import ACTIVITY
 from ..system.workers import Pool, WorkerDied, as_done
 from .estimate import MOVED, PASSAGES
 from .part import Part, Promote, Tally, solve_part
@@ -195,6 +196,7 @@ def prepared(request: Request) -> float:
         engine.prepare(options)
     if request.sections:
         engine.prepare(PASSAGES)
+    ACTIVITY.send("solving rows")
     return time.thread_time() - started
 
 

@@ -206,19 +206,28 @@ class Audit:
     refused: tuple[int, ...] = ()
 
 
-def audited(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
+def audited(
+    request: Request,
+    read: Callable[[int], Mapping[str, Any]],
+    report: Callable[[int], None] = lambda _: None,
+) -> Audit:
     """Solve a sample of the rows again: the request says how many, its hash which.
 
     Args:
         request: the sweep.
         read: returns the columns of a part.
+        report: called with the number of rows that are done.
     """
     ratios: dict[int, float] = {}
     refused = []
+    done = 0
+    report(done)
     for part, numbers in groupby(_sample(request), request.part_of):
         columns = read(part)
         first = part * request.rows_per_part
         for number in numbers:
+            report(done)
+            done += 1
             row = {name: values[number - first] for name, values in columns.items()}
             if row["status"] != Status.OK.value or row["level"] != "computed":
                 continue

@@ -48,13 +48,15 @@ _SCHEMA = 2
 _PART_S = 10.0  # CPU seconds of a part, by the cost model
 _LEAST_PART = 8  # rows
 _MOST_PART = 65_536  # rows
+_PARTS = 16  # a sweep has this many parts, for its workers and its progress, unless
+_SHORT_PART_S = 0.5  # they were shorter than this in CPU seconds
 # attributes of a request that its document has as they are
 _STORED = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "identity", "audit")
 _ALL = "all"
 _PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
 _ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
-# CPU seconds of a sweep, above which a line says that a compiled engine would be cheaper
-_WORTH_A_LINE_S = 1.0
+# CPU seconds of a sweep, above which a faster engine is compiled for the next one
+_WORTH_COMPILING_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -287,15 +289,23 @@ def request(
         tolerance=settings.tolerance,
         engine=engine.name,
         identity=engine.identity,
-        rows_per_part=_rows_per_part(row_s),
+        rows_per_part=_rows_per_part(row_s, table.count, 1 if settings.promotes else engine.lanes),
         audit=min(settings.audit or 0, table.count),
     )
 
 
-def _rows_per_part(row_s: float) -> int:
-    """Return the power of two of rows that take about `_PART_S`, within the limits of a part."""
+def _rows_per_part(row_s: float, count: int, lanes: int) -> int:
+    """Return the rows of a part: a power of two that takes about `_PART_S`, or fewer.
+
+    Args:
+        row_s: CPU seconds of a row.
+        count: rows of the sweep, which has `_PARTS` parts if none would be too short.
+        lanes: rows that are solved at a time.
+    """
     rows = 1 << round(math.log2(max(_PART_S / row_s, 1)))
-    return min(max(rows, _LEAST_PART), _MOST_PART)
+    rows = min(max(rows, _LEAST_PART), _MOST_PART)
+    share = max(count / _PARTS, _SHORT_PART_S / row_s)
+    return min(rows, lanes * math.ceil(share / lanes))
 
 
 def _check_release(scene: Scene, keys: Iterable[str]) -> None:
@@ -318,24 +328,19 @@ def _row_s(engine: Batch, scene: Scene) -> float:
     return engine.swing_s * swings * (1 + work)
 
 
-def worth_compiling(request: Request) -> str:
-    """Return from how many rows compiling a cheaper engine pays; "" if there is none."""
+def worth_compiling(request: Request) -> Batch | None:
+    """Return an engine that is not compiled yet and would solve a sweep's rows faster, if any."""
     row_s = _row_s(batches()[request.engine], request.scene)
-    if request.promotes or row_s * request.table.count < _WORTH_A_LINE_S:
-        return ""
+    if request.promotes or row_s * request.table.count < _WORTH_COMPILING_S:
+        return None
     has_drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
     for other in batches().values():
         if not other.installed or (has_drag and not other.drag):
             continue
-        compiling_s = other.compiling_s(bool(request.sections))
-        gained_s = row_s - _row_s(other, request.scene)
-        if compiling_s and gained_s > 0:
-            rows = float(f"{compiling_s / gained_s:.1g}")
-            return (
-                f"From some {rows:,.0f} such rows on, in one sweep or several, {other.name} costs less "
-                f"than {request.engine}: it is compiled once, for about {compiling_s:.0f} s (--engine {other.name})."
-            )
-    return ""
+        faster = _row_s(other, request.scene) < row_s
+        if faster and other.compiling_s(bool(request.sections)):
+            return other
+    return None
 
 
 def _engine(name: str, scene: Scene, count: int) -> Batch:

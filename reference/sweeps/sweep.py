@@ -22,8 +22,6 @@ from .store import PLAN, Store
 from .swept import Swept
 
 _MOST_IN_MEMORY = 100_000  # rows
-_PIECES = 16  # of a sweep in memory
-_LEAST_PIECE = 256  # rows of such a piece
 _ROWS_OF_FRAME = "Of a data frame write rows.to_csv(FILE, index=False), and give FILE."
 _AUDITED = 1000  # one row in so many is audited, within these limits
 _LEAST_AUDIT = 8  # rows
@@ -118,7 +116,9 @@ def checked_request(
         InputError: a wrong axis or option, or more rows than memory should hold.
     """
     if out is None:
-        return _in_memory(request(scene, over, rows, settings))
+        checked = request(scene, over, rows, settings)
+        _check_memory(checked.table.count)
+        return checked
     if settings.engine == AUTO and (out / PLAN).exists():
         # a sweep goes on with the engine that it began with
         settings = replace(settings, engine=Store.opened(out).request.engine)
@@ -130,18 +130,15 @@ def checked_request(
     return replace(checked, audit=min(audit, _MOST_AUDIT, count))
 
 
-def _in_memory(checked: Request) -> Request:
-    """Return a request with parts small enough for all workers to have some.
+def _check_memory(count: int) -> None:
+    """Refuse more rows than memory should hold.
 
     Raises:
         InputError: there are too many rows.
     """
-    count = checked.table.count
     if count > _MOST_IN_MEMORY:
         expected = f"a folder, for more than {_MOST_IN_MEMORY:,} rows"
         raise InputError("--out", "nothing", expected, "Give --out DIR.")
-    piece = max(_LEAST_PIECE, -(-count // _PIECES))
-    return replace(checked, rows_per_part=min(checked.rows_per_part, piece))
 
 
 def load_sweep(folder: str | Path) -> Swept:
@@ -164,8 +161,12 @@ def run(
     workers: int | None = None,
     cluster: str | None = None,
     report: Report = lambda _: None,
+    report_audit: Report = lambda _: None,
 ) -> Swept:
-    """Solve the parts that are not done yet, and audit; arguments as those of `sweep`."""
+    """Solve the parts that are not done yet, and audit; arguments as those of `sweep`.
+
+    `report_audit` is called with the number of rows that were audited.
+    """
     started = time.perf_counter()
     store = None
     parts = list(range(request.parts))
@@ -188,7 +189,7 @@ def run(
         return store.read(parts=[part]) if store is not None else in_memory[part].columns
 
     audit_started = time.process_time()
-    audit = audited(request, columns_of) if request.audit else None
+    audit = audited(request, columns_of, report_audit) if request.audit else None
     audit_s = time.process_time() - audit_started
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
     swept = Swept(

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
+import time
 
 import pytest
+from places import ROOT
 
 from reference import load_scene
 from reference.engines.octet.rows import SOURCES
 from reference.sweeps.request import Settings, request, worth_compiling
 from reference.sweeps.sweep import checked_request
-from reference.system.machine_code import folder_of
+from reference.system.machine_code import folder_of, kept_variants
 
 pytest.importorskip("pyarrow")
 SMALL = ["paris", "--t-end", "60", "--engine", "heyoka"]
@@ -43,57 +47,61 @@ def test_a_table_shows_no_digit_beyond_its_error(foucault):
             assert float(cell) == pytest.approx(row[f"{quantity}_{unit}"], abs=10 * error)
 
 
-def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling_it_pays(
-    tmp_path, monkeypatch
-):
+LATITUDES = ["site.latitude=-90:90:1"]
+
+
+@pytest.fixture
+def cold(tmp_path, monkeypatch):
+    """A machine that has compiled nothing yet: the folder of its machine code."""
     pytest.importorskip("numba")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    latitudes = ["site.latitude=-90:90:1"]
-    paris = load_scene("paris", {"run.t_end": 12000})
-    cold = checked_request(paris, latitudes, None, None, Settings(audit=0))
-    line = worth_compiling(cold)
-    assert cold.engine == "heyoka"
-    found = re.fullmatch(
-        r"From some ([\d,]+) such rows on, .* once, for about 8 s \(--engine octet\)\.", line
-    )
-    assert found
-    rows = int(found[1].replace(",", ""))
-    fewer, more = (
-        checked_request(
-            paris, [f"pendulum.length=67:68:{step / rows}"], None, None, Settings(audit=0)
-        )
-        for step in (2, 0.5)
-    )
-    # where the line says, auto changes its mind
-    assert [fewer.engine, more.engine] == ["heyoka", "octet"]
-    # too few to tell
-    assert (
-        worth_compiling(
-            checked_request(paris, ["site.latitude=0,90"], None, None, Settings(audit=0))
-        )
-        == ""
-    )
-    damped = load_scene("paris", {"run.t_end": 12000, "pendulum.drag": "0.001"})
-    # octet knows no drag
-    assert worth_compiling(checked_request(damped, latitudes, None, None, Settings(audit=0))) == ""
     folder = folder_of(SOURCES)
     assert folder is not None
-    folder.mkdir()
-    (folder / "march.march-1.py311.1.nbc").touch()
-    kept = checked_request(paris, latitudes, None, None, Settings(audit=0))
-    assert (kept.engine, worth_compiling(kept)) == ("octet", "")
-    small = load_scene("paris", {"run.t_end": 12000, "run.sections": ["gate 30"]})
-    few, many = (
-        checked_request(small, [f"site.latitude=-90:90:{step}"], None, None, Settings(audit=0))
-        for step in (1, 0.25)
-    )
-    # what sections need is still to be compiled
-    assert (few.engine, many.engine) == ("heyoka", "octet")
-    assert "once, for about 8 s" in worth_compiling(few)
-    (folder / "march.march-1.py311.2.nbc").touch()
-    kept = checked_request(small, ["site.latitude=-90:90:3"], None, None, Settings(audit=0))
-    assert (kept.engine, worth_compiling(kept)) == ("octet", "")
-    assert checked_request(damped, latitudes, None, None, Settings(audit=0)).engine == "heyoka"
+    return folder
+
+
+def chosen(over, **values):
+    """Return the engine of a sweep of Paris, and the one that is worth compiling for the next."""
+    scene = load_scene("paris", {"run.t_end": 12000, **values})
+    request = checked_request(scene, over, None, None, Settings(audit=0))
+    other = worth_compiling(request)
+    return request.engine, other and other.name
+
+
+def test_auto_takes_octet_wherever_its_code_is_kept_and_else_where_compiling_it_pays(cold):
+    many = ["pendulum.length=67:68:0.0001"]
+    assert chosen(LATITUDES) == ("heyoka", "octet")
+    assert chosen(many) == ("octet", None)
+    assert chosen(["site.latitude=0,90"]) == ("heyoka", None)  # too few to gain by it
+    assert chosen(LATITUDES, **{"pendulum.drag": "0.001"}) == ("heyoka", None)  # not in octet
+    cold.mkdir()
+    (cold / "march.march-1.py311.1.nbc").touch()
+    assert chosen(LATITUDES) == ("octet", None)
+    # what sections need is compiled apart
+    gate = {"run.sections": ["gate 30"]}
+    assert chosen(LATITUDES, **gate) == ("heyoka", "octet")
+    (cold / "march.march-1.py311.2.nbc").touch()
+    assert chosen(["site.latitude=-90:90:3"], **gate) == ("octet", None)
+    assert chosen(LATITUDES, **{"pendulum.drag": "0.001"})[0] == "heyoka"
+
+
+@pytest.mark.long
+def test_the_first_sweep_compiles_octet_for_the_next_in_the_background(cold):
+    words = [sys.executable, str(ROOT / "foucault.py"), "sweep", "paris"]
+    words += ["--over", "site.latitude=-90:90:1", "--t-end", "12000"]
+
+    def last_line_and_messages():
+        done = subprocess.run(words, capture_output=True, text=True, check=True)
+        return done.stdout.splitlines()[-1], done.stderr
+
+    first, messages = last_line_and_messages()
+    assert "octet is compiled in the background, once" in messages
+    assert "heyoka" in first
+    until = time.monotonic() + 300
+    while not kept_variants("march", cold) and time.monotonic() < until:
+        time.sleep(0.2)
+    second, messages = last_line_and_messages()
+    assert "octet" in second and messages == ""
 
 
 def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compiled(
@@ -101,7 +109,7 @@ def test_parts_of_rows_with_sections_are_smaller_and_the_same_whatever_is_compil
 ):
     pytest.importorskip("numba")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    paris, rows = load_scene("paris", {"run.t_end": 12000}), ["pendulum.length=60:70:0.0001"]
+    paris, rows = load_scene("paris", {"run.t_end": 12000}), ["pendulum.length=60:70:0.00001"]
     plain, gate, high = (
         request(
             paris.with_values({"run.sections": words}), rows, settings=Settings(engine="octet")
