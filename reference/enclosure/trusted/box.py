@@ -302,9 +302,13 @@ class Windows:
                 x = getattr(zero, name, None)
                 if x:
                     own[name] = interval(hull(x.low, x.high) * factor)
-            if own["t"].low <= self.times[-1]:
-                result.append(replace(zero, **own))
-        return tuple(result)
+            result.append(replace(zero, **own))
+
+        # those that may come are the first ones, so that others can be paired with them by number
+        may_come = [zero.t.low <= self.times[-1] for zero in result]
+        count = sum(may_come)
+        demand(all(may_come[:count]), "zeros must be in order")
+        return tuple(result[:count])
 
 
 def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:

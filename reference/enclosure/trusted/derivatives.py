@@ -222,7 +222,7 @@ def scene_motion(piece: Piece, omega_0: Vector) -> SceneMotion:
 def residuals(
     constants: Scaled, scene: SceneMotion, sensitivity: Sensitivity, proposed: Proposed
 ) -> Norms:
-    """Return the norms of P and Q, of their residuals in (12.1), and of (12.1c) of p, K₀, P, Q.
+    """Return the norms of P and Q, of their residuals in (12.1a, b), and of (12.1c) of p, K₀, P, Q.
 
     Args:
         constants: the scene's γ₀ and c, and the step's h.

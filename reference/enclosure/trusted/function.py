@@ -60,7 +60,7 @@ class FunctionPiece:
     """A piece of a golden function.
 
     `until` is its end, a double, and `series` an array of doubles: CUT of each component. `of_proof`
-    has a row for each component: the `Bounds` of (10.1), before anything is evaluated.
+    has a row for each component: the `Bounds` of (10.1a, b), before anything is evaluated.
     """
 
     until: Any

@@ -76,7 +76,11 @@ def _check_sections(texts: Mapping[str, str], stated: Any, proved: ProvedBox) ->
     """Demand that the table of passages has those of just these sections, in their order."""
     sections = {word: zeros for word, zeros in proved.zeros.items() if word != XDOT}
     words = [*sections]
-    demand([*stated.get("sections", {})] == words, "misprint: other sections")
+    requested = stated["scene"]["run"].get("sections", "")
+    demand(
+        [*stated.get("sections", {})] == words and "; ".join(words) == requested,
+        "misprint: other sections",
+    )
     if not sections:
         return
     header, *lines = lines_of(texts["sections.csv"])
@@ -121,10 +125,12 @@ def _check_zeros(
 
 def end_of(inputs: Inputs, uncertain: Mapping[str, str], side: int) -> Inputs:
     """Return inputs with half of a width added to each that is uncertain, or taken from it with `side` -1."""
-    shifts = {
-        name.partition(".")[2]: side * Fraction(width.removeprefix("±"))
-        for name, width in uncertain.items()
-    }
+    shifts = {}
+    for name, text in uncertain.items():
+        half_width = Fraction(text.removeprefix("±"))
+        # Lemma 12.4 takes every δ >= 0: a box must not be turned inside out
+        demand(half_width >= 0, "misprint: a negative width")
+        shifts[name.partition(".")[2]] = side * half_width
     kind = "position" if inputs.position else "angles"
     release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
     changes: dict[str, Any] = {kind: tuple(q + shifts.pop(name, 0) for name, q in release)}

@@ -2,7 +2,7 @@
 
 | name                 | symbol                                          | unit                    |
 |----------------------|-------------------------------------------------|-------------------------|
-| `form.a`, `.b`, `.d` | a, b, d of F = a·r + b·v - d                    | lengths of the rod      |
+| `form.a`, `.b`, `.d` | a, b, d of F = a·r + b·v - d                    | 1; 1/s² in (13.6, 13.8) |
 | `a_whole`, …         | integers that stand for ha, b, hd               | over 2^bits             |
 | `a_miss`, …          | ϑa, ϑb, ϑd: by how much these miss              | a step's time           |
 | `eta`, `U`, `A`      | bounds of |r - p|, |v - p'|, |r'' - p''|        | a step's time           |
@@ -62,8 +62,11 @@ class ByForm(NamedTuple):
 
 def azimuth_of(word: str) -> tuple[arb, arb]:
     """Return sine and cosine of the azimuth of `gate α`, `gate α@0` or `turn α`."""
-    _, _, azimuth = word.partition(" ")
-    return ball(Fraction(azimuth.removesuffix("@0")) / 180).sin_cos_pi()
+    kind, _, azimuth = word.partition(" ")
+    demand(kind in ("gate", "turn"), f"there is no section {word}")
+    if kind == "gate":
+        azimuth = azimuth.removesuffix("@0")
+    return ball(Fraction(azimuth) / 180).sin_cos_pi()
 
 
 def form(balls: SceneBalls, word: str) -> AffineForm:

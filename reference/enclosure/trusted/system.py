@@ -68,7 +68,7 @@ class SceneBalls:
             self.v = self.turned(velocity, 1)
 
             self._find_exact_zeros((sin * cos * rate).is_zero())
-            # whether the velocity at the release is exactly horizontal, and c exactly vertical (Lemma 13.2)
+            # (13.2d): whether the velocity at the release is exactly horizontal, and c exactly vertical
             self.level = _horizontal(inputs, vz)
             self.upright = north.is_zero()
             self._bound_the_motion()
@@ -116,6 +116,7 @@ class SceneBalls:
         if inputs.position:
             x, y, vx, vy = (ball(q) / self.length for q in inputs.position)
             z = -(1 - x * x - y * y).sqrt()
+            demand(z < 0, "a release by x and y must be below the suspension")
             return [x, y, z], [vx, vy, -(x * vx + y * vy) / z]
 
         # of the angles in half turns
@@ -148,7 +149,7 @@ def _horizontal(inputs: Any, vz: arb) -> bool:
     """Return whether the velocity at the release is exactly horizontal; `vz` is a ball of its vertical component."""
     if inputs.position and all(isinstance(q, Fraction) for q in inputs.position):
         x, y, vx, vy = inputs.position
-        # of exact inputs: r·v = 0 leaves z vz = -(x vx + y vy)
+        # (13.2d), of exact inputs: r·v = 0 leaves z vz = -(x vx + y vy), and z < 0 by `_release`
         return bool(x * vx + y * vy == 0)
     return vz.is_zero()
 
