@@ -61,6 +61,11 @@ class SceneBalls:
             weight = _weight(inputs, sin, cos)
             self.release = self._release(inputs)
             position, velocity = self.release
+            _, _, z = position
+            demand(
+                not inputs.position or z < 0,
+                "a release by x and y must be below the suspension",
+            )
             _, north, _ = weight
             _, _, vz = velocity
             self.c = self.turned(times(1 / self.length, weight), 1)
@@ -116,7 +121,6 @@ class SceneBalls:
         if inputs.position:
             x, y, vx, vy = (ball(q) / self.length for q in inputs.position)
             z = -(1 - x * x - y * y).sqrt()
-            demand(z < 0, "a release by x and y must be below the suspension")
             return [x, y, z], [vx, vy, -(x * vx + y * vy) / z]
 
         # of the angles in half turns
@@ -149,7 +153,7 @@ def _horizontal(inputs: Any, vz: arb) -> bool:
     """Return whether the velocity at the release is exactly horizontal; `vz` is a ball of its vertical component."""
     if inputs.position and all(isinstance(q, Fraction) for q in inputs.position):
         x, y, vx, vy = inputs.position
-        # (13.2d), of exact inputs: r·v = 0 leaves z vz = -(x vx + y vy), and z < 0 by `_release`
+        # (13.2d), of exact inputs: r·v = 0 leaves z vz = -(x vx + y vy), and z < 0 is demanded
         return bool(x * vx + y * vy == 0)
     return vz.is_zero()
 
