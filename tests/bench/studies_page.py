@@ -108,8 +108,8 @@ def _choice(kept: Documents) -> Iterator[str]:
     rows = [row for row in rows_of(kept["paris"]) if row.measured]
     heyoka, library, own, scipy = (_taken(_reaching(rows, names, 1e-6)) for names in KINDS.values())
     yield (
-        f"For 1e-6 m over a day of the Paris pendulum take {heyoka} of CPU time. From a library of C or C++ take "
-        f"{library}. To write a method yourself, take {own}. In SciPy take {scipy}."
+        f"Which method is the cheapest for 1e-6 m over a day of the Paris pendulum? {heyoka} of CPU time. In a library "
+        f"of C or C++: {library}. To write yourself: {own}. In SciPy: {scipy}."
     )
     yield ""
     yield "![Position error against CPU time of six integrators, a day of the Paris pendulum](error_time.svg)"
@@ -125,11 +125,11 @@ def _choice(kept: Documents) -> Iterator[str]:
         for name in ("heyoka_long_double", "heyoka_real128")
     }
     yield (
-        "Each entry is the cheapest setting that was measured and reached the error; in brackets are the equations "
-        "that were integrated, [by their variables](format.md#equations). Double precision ends near "
-        f"1e-12 m. Beyond that `heyoka_long_double` reaches {best['heyoka_long_double']:.1e} m, and "
-        f"`heyoka_real128` {best['heyoka_real128']:.1e} m; [more digits](#{DIGITS_ANCHOR}) are a matter of CPU time. "
-        "The tables below have all methods, also those that fit no column here: numbalsoda, REBOUND, diffrax, the "
+        "Each entry is the cheapest measured setting that reached the error. The equations are in brackets, "
+        "[named for their variables](format.md#equations). Double precision reaches about "
+        f"1e-12 m, `heyoka_long_double` {best['heyoka_long_double']:.1e} m, and "
+        f"`heyoka_real128` {best['heyoka_real128']:.1e} m; [more digits](#{DIGITS_ANCHOR}) only take more CPU time. "
+        "The tables below have all methods, including those without a column here: numbalsoda, REBOUND, diffrax, the "
         "multistep methods, and this project's own `limbs`."
     )
     yield ""
@@ -142,8 +142,8 @@ def _choice(kept: Documents) -> Iterator[str]:
         "Two warnings. On [difficult scenes](#"
         + STIFF_ANCHOR.format(count=len(_scenes(kept)))
         + ") the multistep "
-        "methods (BDF, Adams, LSODA) often report success and are wrong: check them before you trust them. Where drag "
-        "makes the motion stiff, take an implicit method such as SciPy's Radau.",
+        "methods (BDF, Adams, LSODA) often report success and are wrong: check their results. If drag makes the motion "
+        "stiff, use an implicit method such as SciPy's Radau.",
     )
     yield ""
 
@@ -174,13 +174,13 @@ def _head(kept: Documents) -> Iterator[str]:
     yield ""
     yield (
         "`make studies` runs the commands below one after the other, keeps their results in `docs/studies/` and writes "
-        "this page from them; a test holds every figure against these files. CPU seconds are those of the work alone, "
-        "on one thread, without imports and compilation. The error of a run is its largest position error over the "
-        "grid, against the golden dataset of the same binary64 inputs. The tables interpolate the cost of an error "
-        "between neighbouring settings; the table above names settings that were run. A run that would take more CPU "
-        "seconds than `--limit` is run in part only: its cost is extrapolated and marked `~`, and it has no error. An "
-        "absolute tolerance is scaled to the swing of each variable, or to the smallest where a library takes one "
-        f"number for all. {_counted_methods(kept)}"
+        "this page from them. A test compares every figure with these files. CPU seconds are for the integration "
+        "alone, on one thread, without imports and compilation. The error of a run is its largest position error over "
+        "the grid, relative to the golden dataset with the same binary64 inputs. The tables interpolate the cost of an "
+        "error between neighbouring settings; the table above has only settings that were run. A run that would take "
+        "more CPU seconds than `--limit` is run in part only: its cost is extrapolated and marked `~`, and it has no "
+        "error. Absolute tolerances are scaled to the swing of each variable (for libraries with one number, to the "
+        f"smallest). {_counted_methods(kept)}"
     )
     yield ""
     loads = {name: busy(_results(name, kept)).partition(". ") for name in COMMANDS}
@@ -230,7 +230,7 @@ def _counted_methods(kept: Documents) -> str:
     hard = {cell.method for cell in cells(kept["stability"]) if cell.status != Status.NOT_INSTALLED}
     without = ", ".join(f"`{name}`" for name in METHODS if name not in hard)
     return (
-        f"Of the {len(METHODS)} methods of `foucault methods`, {len(ladders)} are run over their settings on Paris and "
+        f"`foucault methods` lists {len(METHODS)} methods. {len(ladders)} are run over their settings on Paris and "
         f"other scenes, {len(hard)} on the difficult scenes (without {without}), and "
         f"{len({run['method'] for run in kept['long']['long_runs']})} over thirty days."
     )
@@ -272,29 +272,29 @@ def _paris(kept: Documents) -> Iterator[str]:
         and _best(space) < _best(momentum)
         and min(angles) > 3,
         "- The equations matter as much as the method. `momentum` is the cheapest form at 1e-3, 1e-6 and 1e-9 m; "
-        f"where the last digit counts `space` is better in double ({_best(space):.1e} m against {_best(momentum):.1e} "
-        "m), because it corrects what rounding does to |n|. The angles of the paper's Lagrangian cost "
+        f"`space` has the smallest error in double ({_best(space):.1e} m against {_best(momentum):.1e} "
+        "m), because it corrects the rounding errors of |n|. The angles of the paper's Lagrangian cost "
         f"{min(angles):.0f} to {max(angles):.0f} times more: the path passes near the vertical, where they are "
         "singular.",
     )
     gauss = min(ladders["gauss_legendre"].measured, key=lambda row: row.error_m or 1.0)
     swing = 2 * document["t_end"] / document["reference"]["transits"]
     yield (
-        "- In `momentum` everything that is conserved is quadratic, and Gauss' method keeps quadratic invariants: "
+        "- In `momentum` all invariants are quadratic, and Gauss' method conserves quadratic invariants: "
         f"{gauss.error_m:.0e} m with steps of {gauss.setting:g} s, {gauss.setting / swing:.2f} of a swing."
     )
     bdf = _cost(ladders["cvode_c_bdf"], 1e-5) / _cost(ladders["cvode_c_adams"], 1e-5)
     radau, dop853 = (_loosest(document, name) for name in ("scipy_radau", "scipy_dop853"))
     yield so(
         radau.setting == dop853.setting and cost_of(radau) > cost_of(dop853) and bdf > 1,
-        "- An undamped pendulum is not stiff: implicit methods pay for a stability that nothing asks for. At 1e-5 m "
-        f"CVODE's BDF costs {bdf:.2g} times as much as its Adams, and at a tolerance of {tidy(radau.setting)} SciPy's "
+        "- An undamped pendulum is not stiff: the stability of implicit methods is not needed and costs time. At 1e-5 "
+        f"m CVODE's BDF costs {bdf:.2g} times as much as its Adams, and at a tolerance of {tidy(radau.setting)} SciPy's "
         f"Radau costs {cost_of(radau) / cost_of(dop853):.2g} times as much as its DOP853.",
     )
     native, wrapped = (_loosest(document, name) for name in ("cvode_c_adams", "cvode_adams"))
     yield so(
         native.setting == wrapped.setting and cost_of(wrapped) > cost_of(native),
-        f"- Behind a wrapper that calls Python for each right-hand side, the same steps cost more: CVODE's Adams at a "
+        f"- A wrapper that calls Python for each right-hand side makes the same steps slower: CVODE's Adams at a "
         f"tolerance of {tidy(native.setting)} takes {seconds(cost_of(native))} in C and {seconds(cost_of(wrapped))} "
         "through scikit-sundae.",
     )
@@ -303,7 +303,7 @@ def _paris(kept: Documents) -> Iterator[str]:
     ]
     yield so(
         max(compiled) < 1.5 * min(compiled),
-        "- Compiled throughout, an explicit method of order 8 costs about the same from every library: at 1e-6 m "
+        "- A fully compiled explicit method of order 8 costs about the same in every library: at 1e-6 m "
         f"{seconds(compiled[0])} in Boost, {seconds(compiled[1])} in GSL, {seconds(compiled[2])} in numbalsoda.",
     )
     yield ""
@@ -361,9 +361,9 @@ def _again(kept: Documents) -> Iterator[str]:
     quarter = len(ratios) // 4
     yield so(
         tau > SAME_ORDER,
-        f"{len(both)} of the runs were made again under another load. They rank by cost nearly as before (Kendall's "
-        f"tau {tau:.2f}). Single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times what they were, half of them "
-        f"{ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Trust ratios of costs to about that.",
+        f"{len(both)} of the runs were repeated under another load. They rank by cost nearly as before (Kendall's "
+        f"tau {tau:.2f}). Single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times the first ones, half of them "
+        f"{ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Ratios of costs are reliable to about that.",
     )
     yield ""
 
@@ -432,9 +432,9 @@ def _stability(kept: Documents) -> Iterator[str]:
     )
     yield (
         f"Each method is asked for the same number of digits on every scene, over at most {SWINGS} small swings. A run "
-        f"is *silently wrong* if it reports success with an error above {WRONG} times what was asked for, and above "
-        "what the motion itself makes of such an error at the release. Where the motion magnifies it by more, the run "
-        "is *ill-conditioned*, and the method is not to blame. Steps are parts of 2π over the fastest rate of the "
+        f"is *silently wrong* if it reports success with an error above {WRONG} times the requested one, and above "
+        "what such an error at the release grows to by the motion itself. If the motion amplifies it by more, the run "
+        "is *ill-conditioned*; that is not the method's fault. Steps are fractions of 2π over the fastest rate of the "
         "scene."
     )
     yield ""
@@ -477,25 +477,25 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     yield so(
         {method for (method, _), _ in top} == multistep,
         "- The multistep methods BDF and Adams are silently wrong most often "
-        f"({', '.join(f'{method} on {count} scenes' for (method, _), count in top)}): their error is kept per "
-        "step, and adds up over the swings.",
+        f"({', '.join(f'{method} on {count} scenes' for (method, _), count in top)}): they control the error per "
+        "step, and it accumulates over the swings.",
     )
     yield so(
         status["heyoka_double", "double, space", "near_inverted"] == Status.SILENTLY_WRONG
         and status["heyoka_double", "double, momentum", "near_inverted"] == Status.OK,
-        "- `space` leaves the sphere where a rod is pushed (`near_inverted`), and does not say so; "
-        "`momentum` keeps to it.",
+        "- `space` leaves the sphere without an error if the rod is under compression (`near_inverted`); "
+        "`momentum` stays on it.",
     )
     yield so(
         status["heyoka_double", "double, plane", "above_horizontal"] != Status.OK,
-        "- `plane` does not know on which side of the horizontal it is, and fails on `above_horizontal`.",
+        "- `plane` cannot distinguish above from below the horizontal, and fails on `above_horizontal`.",
     )
     kept = {
         cell.method for cell in found if cell.scene == "separatrix" and cell.status == Status.OK
     }
     yield so(
         not kept,
-        "- `separatrix`, which ends on top of the rod, defeats every method: the motion magnifies an error more than "
+        "- `separatrix`, which ends on top of the rod, defeats every method: the motion amplifies an error more than "
         "any tolerance allows for.",
     )
     stiff = [
@@ -509,8 +509,8 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
             for cell in found
             if cell.method == "scipy_radau" and cell.scene in stiff
         ),
-        f"- Where drag makes the motion stiff ({', '.join(f'`{name}`' for name in stiff)}) SciPy's Radau is right "
-        "everywhere.",
+        f"- On the scenes that drag makes stiff ({', '.join(f'`{name}`' for name in stiff)}) SciPy's Radau is always "
+        "right.",
     )
     yield ""
 
@@ -527,8 +527,8 @@ def _long(kept: Documents) -> Iterator[str]:
     yield from _section("## Thirty days", "long")
     yield (
         f"Position error at the end of {span_s / DAY_S:g} days of Paris, and the exponent p of error ∝ t^p, fitted to "
-        f"the largest error so far from {span_s * FROM / 3600:g} hours on. The truth is from limbs. Left out, because "
-        f"it takes longer than all others: {left_out}."
+        f"the largest error so far from {span_s * FROM / 3600:g} hours on. The reference is a run of limbs. Omitted, "
+        f"because it takes longer than all others: {left_out}."
     )
     yield ""
     yield "| method | setting | error at the end, m | p | CPU s |"
@@ -542,9 +542,9 @@ def _long(kept: Documents) -> Iterator[str]:
         min(power["heyoka_double", "momentum"], power["heyoka_long_double", "momentum"]) > 1.7
         and 1.1 < power["numbalsoda_dop853", "space"] < 1.7
         and abs(power["rk4", "plane"] - 1) < 0.1,
-        "A drift of the length that keeps its sign gives t² (`momentum` in double and in long double, where nothing "
-        "corrects what rounding does to |n|, comes near it); a constant error of the frequency (RK4) gives t. DOP853 "
-        "lies between the two.",
+        "A drift of the length with constant sign gives t². `momentum` in double and in long double comes near it, "
+        "because nothing corrects the rounding errors of |n|. A constant error of the frequency (RK4) gives t. DOP853 "
+        "is between the two.",
     )
 
 
