@@ -288,8 +288,8 @@ def _paris(kept: Documents) -> Iterator[str]:
     yield so(
         radau.setting == dop853.setting and cost_of(radau) > cost_of(dop853) and bdf > 1,
         "- An undamped pendulum is not stiff: the stability of implicit methods is not needed and costs time. At 1e-5 "
-        f"m CVODE's BDF costs {bdf:.2g} times as much as its Adams, and at a tolerance of {tidy(radau.setting)} SciPy's "
-        f"Radau costs {cost_of(radau) / cost_of(dop853):.2g} times as much as its DOP853.",
+        f"m CVODE's BDF costs {bdf:.2g} times as much as its Adams, and at a tolerance of {tidy(radau.setting)} "
+        f"SciPy's Radau costs {cost_of(radau) / cost_of(dop853):.2g} times as much as its DOP853.",
     )
     native, wrapped = (_loosest(document, name) for name in ("cvode_c_adams", "cvode_adams"))
     yield so(
