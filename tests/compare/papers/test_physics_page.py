@@ -88,7 +88,7 @@ NUMBERS = {
     "full turn": lambda: f"a full turn in {fixed(2 * pi / REAL_TURN / 3600, 1)} hours",
     "turn of the model": lambda: f"as the paper states it by {fixed(degrees(TURN) * 3600, 3)}°",
     "ellipse": lambda: (
-        f"{fixed(half_axes()[0], 3)} m long and {fixed(1000 * half_axes()[1], 3)} mm wide"
+        f"half-axes of {fixed(half_axes()[0], 3)} m and {fixed(1000 * half_axes()[1], 3)} mm"
     ),
     "tilt": lambda: (
         f"hangs {fixed(degrees(P.case.rest_angle), 4)}° south of straight down, which at 67 m is"
