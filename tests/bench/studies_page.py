@@ -272,7 +272,7 @@ def _paris(kept: Documents) -> Iterator[str]:
         and _best(space) < _best(momentum)
         and min(angles) > 3,
         "- The equations matter as much as the method. `momentum` is the cheapest form at 1e-3, 1e-6 and 1e-9 m; "
-        f"`space` has the smallest error in double ({_best(space):.1e} m against {_best(momentum):.1e} "
+        f"`space` reaches a smaller error in double ({_best(space):.1e} m against {_best(momentum):.1e} "
         "m), because it corrects the rounding errors of |n|. The angles of the paper's Lagrangian cost "
         f"{min(angles):.0f} to {max(angles):.0f} times more: the path passes near the vertical, where they are "
         "singular.",
@@ -483,7 +483,7 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     yield so(
         status["heyoka_double", "double, space", "near_inverted"] == Status.SILENTLY_WRONG
         and status["heyoka_double", "double, momentum", "near_inverted"] == Status.OK,
-        "- `space` leaves the sphere without an error if the rod is under compression (`near_inverted`); "
+        "- `space` leaves the sphere if the rod is under compression (`near_inverted`), and reports no failure; "
         "`momentum` stays on it.",
     )
     yield so(
