@@ -245,7 +245,7 @@ def _bottom_in_limbs(z: Search, flat: float, bend: float, step: Step, model: Lim
     return bottom
 
 
-@merged
+@compiled
 def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
     """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval."""
     limb_count = model.limb_count
