@@ -67,7 +67,7 @@ _ENGINE = option(
 )
 _NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
 _AUDIT = option(
-    "--audit/--no-audit", "Prove it again by FLINT alone: the same digits (default: --audit)."
+    "--audit/--no-audit", "Check all that compiled code returns for the proof (default: --audit)."
 )
 _CONFIRM = option(
     "--confirm",

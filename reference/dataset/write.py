@@ -91,7 +91,7 @@ def write(
         expected = "a golden function, or tables"
         raise InputError("tables", "none", expected, "Solve it with function=True.")
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
-        advice = "What ships in data/golden is proved by FLINT alone, too."
+        advice = "What ships in data/golden does not rest on compiled code."
         raise InputError("audit", "no audit", "an audited proof", advice)
     write_texts(render(solution, name, tables=tables), folder, solution)
     return folder

@@ -8,8 +8,8 @@ measures whatever they get wrong:
 - `guess` proposes zeros;
 - `prove` and `prove_box` choose the precision and pass steps on.
 
-`sums_checked` compares the compiled sums of digits with FLINT's integers. THEOREM.md, section 9, says
-what else has to be believed. Endpoints of intervals are Fractions; no flint object leaves this package.
+THEOREM.md, section 9, says what else has to be believed. Endpoints of intervals are Fractions; no
+flint object leaves this package.
 """
 
 from .approximant import pair, turned

@@ -18,13 +18,13 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
-from ..errors import UnreachableError
+from ..errors import IntegrationError, UnreachableError
 from ..model.sections import gate_without_rest
 from ..numbers.precision import log2
 from ..numbers.taylor_step import TaylorStep
 from ..numbers.zeros import XDOT
 from .frames import ColumnSource
-from .sums_checked import SumsChecked
+from .trusted.audit import Audit, WrongSumsError
 from .trusted.course import Course
 from .trusted.shapes import Proved, ProvedFunction, State
 from .trusted.system import SceneBalls
@@ -68,7 +68,9 @@ class Enclosure:
     method: str  # "radius" (Theorem C) or "columns" (Theorem E)
     position_radius: Fraction  # the largest of all, in m
     velocity_radius: Fraction  # in m/s
-    cpu_s: float  # CPU seconds, without those of the approximant
+    cpu_s: float  # CPU seconds, without those of the approximant and of the audit
+    audited: bool = False  # what compiled code returned was checked, for every step
+    audit_s: float = 0.0  # CPU seconds of that
     function: ProvedFunction | None = None  # the golden function, if it was asked for
 
 
@@ -89,7 +91,7 @@ class _Request:
     radius: Fraction
     zeros: tuple[str, ...]
     progress: Callable[[float], None] | None
-    flint_only: bool
+    audit: bool
     function: bool
 
 
@@ -102,7 +104,7 @@ def enclose(
     zeros: tuple[str, ...] = (XDOT,),
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
-    flint_only: bool = False,
+    audit: bool = False,
     function: bool = False,
     lost: Lost | None = None,
 ) -> Enclosure:
@@ -118,17 +120,18 @@ def enclose(
         zeros: words of the zeros to enclose: `XDOT` for transits, and those of sections.
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
-        flint_only: prove by FLINT alone, and compare the sums of digits with its integers.
+        audit: check for every step what compiled code returned.
         function: also make the golden function, and bound it.
         lost: bits that a run loses in addition to `MARGIN_BITS`, if one radius carries its error
             (`Feed.lost`).
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
+        IntegrationError: the audit found that compiled code returned wrong sums.
     """
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
         raise ValueError("times: got a sequence that is empty, negative or not increasing")
-    request = _Request(inputs, list(times), radius, zeros, progress, flint_only, function)
+    request = _Request(inputs, list(times), radius, zeros, progress, audit, function)
     try:
         plan = plan_for(inputs, times[-1], radius, method, lost)
     except (ArithmeticError, ValueError) as error:
@@ -183,12 +186,12 @@ class _Attempt:
         self.method = plan.method
         self.bits = first.bits
         self.order = len(first.coefficients[0]) - 1
-        balls = SceneBalls(request.inputs, first.bits + SCENE_GUARD_BITS, request.flint_only)
+        self.audit = Audit() if request.audit else None
+        self.audit_s = 0.0
+        balls = SceneBalls(request.inputs, first.bits + SCENE_GUARD_BITS, self.audit)
         by_columns = plan.method == "columns"
         self.columns = ColumnSource(balls) if by_columns else None
         self.course = Course(balls, request.times, by_columns, request.zeros)
-        if request.flint_only:
-            self.course.followers.append(SumsChecked())
         self.fit = None
         if request.function:
             # a proof rests on the code of a function only where it has one
@@ -211,6 +214,8 @@ class _Attempt:
             self.fit.add()
         self.cpu_s += process_time() - begun
         self.steps += 1
+        if self.audit and self.audit.full:
+            self._check_sums(self.audit)
         self._check_last_state()
         if self.request.progress:
             end = self.request.times[-1]
@@ -224,6 +229,9 @@ class _Attempt:
         proved = function.proved if function else self.course.finish()
         radii = _radii(proved.states)
         self._check(radii, self.request.times[-1], 1)
+        self.cpu_s += process_time() - begun
+        if self.audit:
+            self._check_sums(self.audit)
         return Enclosure(
             proved=proved,
             bits=self.bits,
@@ -232,9 +240,25 @@ class _Attempt:
             method=self.method,
             position_radius=radii.position,
             velocity_radius=radii.velocity,
-            cpu_s=self.cpu_s + process_time() - begun,
+            cpu_s=self.cpu_s,
+            audited=self.audit is not None,
+            audit_s=self.audit_s,
             function=function,
         )
+
+    def _check_sums(self, audit: Audit) -> None:
+        """Check what compiled code returned since the last time.
+
+        Raises:
+            IntegrationError: it is wrong. Another attempt would only hide that.
+        """
+        begun = process_time()
+        try:
+            audit.check()
+        except WrongSumsError as error:
+            advice = "Delete numba's machine code, update numba, or try another machine."
+            raise IntegrationError(f"audit: {error}.", advice) from None
+        self.audit_s += process_time() - begun
 
     def _check_last_state(self) -> None:
         """Raise _TooWide if the last state of new ones is of no use."""

@@ -8,7 +8,7 @@
 - `pilot`: pilot runs, which measure how rounding errors grow, and the limits of a run.
 - `agreement`: how far two runs of a scene are apart, and the errors that follow, those of zeros
   too.
-- `enclosed`: the level enclosed: a proof, with its audit and its confirmation beside it. `proving`:
+- `enclosed`: the level enclosed: a proof, with its confirmation beside it. `proving`:
   the proof itself; `proof_steps`: the run whose Taylor polynomials it takes; `guard`: a run that
   must find the same zeros.
 - `swing`: frequency and precession as intervals, from the highest points.

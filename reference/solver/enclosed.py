@@ -1,4 +1,4 @@
-"""The level `enclosed`: a proof, its audit by FLINT alone, and its confirmation by heyoka.
+"""The level `enclosed`: a proof, and its confirmation by heyoka.
 
 A confirmation repeats the whole run, or a sample of the grid's intervals.
 
@@ -10,12 +10,9 @@ last digit, and the run has to agree as closely as a whole one.
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
-from typing import Any
 
 from ..engines import AUTO
 from ..engines.plan import Plan, Report, Run
@@ -24,7 +21,6 @@ from ..engines.registry import (
     expected_s,
     fastest,
     in_background,
-    reports,
     run,
     send_run,
 )
@@ -33,22 +29,17 @@ from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
 from ..numbers.zeros import XDOT
 from ..scenes.fields import Confirmation
-from ..system.workers import Emit, Parent
 from .agreement import bits_lacking, zeros_lacking
 from .choice import confirming_plan, drawn_intervals, first_prec, need_flint, rounded_prec
 from .guard import guarded
 from .pilot import MAX_RAISES, check_reach, run_pilot
 from .proving import ProofTask, proved
 from .request import SolveRequest
-from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals, tables_of
+from .solution import SAMPLED, CrossCheck, Solution, decimals_of_zeros, grid_decimals
 from .workload import Workload
 
-# steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
-_AUDIT_STEPS = 2000
-_LOWER = 5  # priority of that process, in steps of `nice`
 # parts of the work, as its progress names them
 _PROVING = "proving"
-_AUDITING = "auditing"
 _CONFIRMING = "confirming"
 _SEEING = "looking for transits"
 _WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
@@ -57,20 +48,21 @@ _WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` l
 def solve_enclosed(request: SolveRequest) -> Solution:
     """Enclose a scene's states and zeros so tightly that every digit asked for is decided.
 
-    With `audit`, FLINT alone proves the same run again, which has to give the same digits. With
+    With `audit`, all that compiled code returns for the proof is checked, step by step. With
     `confirm`:
 
     - "whole": heyoka's run in another formulation has to agree to every digit and transit,
     - "sampled": heyoka has to reach the end of each drawn interval of the grid from its first row.
 
-    Audit and whole confirmation run in the background where that pays. Unless a whole run confirms
-    every transit, a cheaper run with event detection must find the same ones (`guard`).
+    A whole confirmation runs in the background where that pays. Unless a whole run confirms every
+    transit, a cheaper run with event detection must find the same ones (`guard`).
 
     Raises:
         InputError: python-flint is not installed.
         UnreachableError: no balls are small enough, and it tells the radius that was reached; or
             heyoka's confirmation is out of reach.
-        IntegrationError: a run lies outside the enclosure, or finds other transits or numbers.
+        IntegrationError: a run lies outside the enclosure, or finds other transits or numbers; or
+            the audit finds that compiled code returned wrong sums.
     """
     need_flint()
     from .. import enclosure
@@ -79,31 +71,24 @@ def solve_enclosed(request: SolveRequest) -> Solution:
     options = request.proof
     enclosure.check_gates(scene.exact, scene.run.sections or ())
     pilot = run_pilot(scene.exact, request.times)
-    task = ProofTask(scene, request.engine, pilot, options.function)
+    task = ProofTask(scene, request.engine, pilot, options.function, options.audit)
     confirm = _affordable(options.confirm, task)
 
     with ExitStack() as background:
         plan = None if confirm == "none" else _confirming_plan(task, confirm)
         workload = _workload(request, task, plan, confirm)
-        whole_run = second_proof = None
+        whole_run = None
         if plan is not None and confirm == "whole":
             pays = expected_s(plan, pilot.steps) >= WORTH_A_PROCESS
             whole_run = background.enter_context(in_background(pays, send_run, plan))
             workload.watch(_CONFIRMING, whole_run)
-        if options.audit:
-            pays = pilot.steps >= _AUDIT_STEPS
-            work = in_background(pays, _send_digits, replace(task, function=False))
-            second_proof = background.enter_context(work)
-            workload.watch(_AUDITING, second_proof)
 
         solution = proved(task, enclosure.enclose, workload.part(_PROVING))
         workload.finish(_PROVING)
-        if plan is not None and confirm == "sampled":  # while the audit goes on
+        if plan is not None and confirm == "sampled":
             witness = _sampled(plan, solution, workload.part(_CONFIRMING))
             solution = confirmed(task, solution, confirm, witness)
             workload.finish(_CONFIRMING)
-        if second_proof is not None:
-            solution = audited(solution, *second_proof.result(workload.part(_AUDITING)))
         if whole_run is not None:
             witness = whole_run.result(workload.part(_CONFIRMING))
             solution = confirmed(task, solution, confirm, witness)
@@ -122,8 +107,6 @@ def _workload(
     engine = fastest(prec, task.engine, steps, proof=True)
     proof_s = steps * engine.proof_step_s + engine.expected_s(steps, prec)
     parts_s = {_PROVING: proof_s}
-    if request.proof.audit:
-        parts_s[_AUDITING] = proof_s
     if plan is not None:
         share = Fraction(1, SAMPLED) if confirm == "sampled" else 1
         parts_s[_CONFIRMING] = expected_s(plan, steps) * float(share)
@@ -139,45 +122,6 @@ def _affordable(confirm: Confirmation, task: ProofTask) -> Confirmation:
     if confirm == "sampled" and len(drawn_intervals(task.scene)) > task.pilot.steps:
         return "whole"
     return confirm
-
-
-def audited(solution: Solution, digits: Any, cpu_s: float) -> Solution:
-    """Return a proved solution as audited.
-
-    Args:
-        solution: the solution.
-        digits: those that FLINT alone proves, as of `proved_digits`.
-        cpu_s: CPU seconds that this took.
-
-    Raises:
-        IntegrationError: the digits differ.
-    """
-    if digits != proved_digits(solution):
-        raise IntegrationError("FLINT alone proves other digits.")
-    assert solution.proof is not None
-    return replace(solution, proof=replace(solution.proof, audited=True, audit_s=cpu_s))
-
-
-def proved_digits(solution: Solution) -> Any:
-    """Return all digits of a solution, and which transits are decided."""
-    tables = [table.printed(decimals) for table, decimals in tables_of(solution)]
-    decided = {}
-    for word, zeros in solution.zeros.items():
-        parities = [parity for _, _, parity in zeros.possible]
-        decided[word] = (zeros.directions, parities)
-    return tables, decided
-
-
-def _send_digits(emit: Emit, task: ProofTask) -> None:
-    """Prove the digits by FLINT alone, and send them."""
-    from ..enclosure import enclose
-
-    if isinstance(
-        emit, Parent
-    ):  # in a process of its own: leave the core to heyoka's run, the longest
-        os.nice(_LOWER)
-    again = proved(task, partial(enclose, flint_only=True), reports(emit))
-    emit((proved_digits(again), again.cpu_s - again.pilot_s))
 
 
 def _confirming_plan(task: ProofTask, confirm: Confirmation, prec: int | None = None) -> Plan:

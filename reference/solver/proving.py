@@ -61,12 +61,14 @@ class ProofTask:
         engine: name of the engine that makes the approximant; "auto" for the fastest.
         pilot: how rounding errors grow on the scene.
         function: whether the golden function is made, too.
+        audit: whether all that compiled code returns for the proof is checked.
     """
 
     scene: Scene
     engine: str
     pilot: Pilot
     function: bool = False
+    audit: bool = False
 
 
 def proved(task: ProofTask, enclose: Any, report: Report | None = None) -> Solution:
@@ -74,7 +76,7 @@ def proved(task: ProofTask, enclose: Any, report: Report | None = None) -> Solut
 
     Args:
         task: what is to be proved.
-        enclose: that of enclosure/prove.py, or the same by FLINT alone.
+        enclose: that of enclosure/prove.py.
         report: called with the simulated time reached, in s.
 
     Raises:
@@ -110,6 +112,7 @@ def _decided(task: ProofTask, enclose: Any, feed: Feed, report: Report | None) -
             radius=radius,
             zeros=scene.run.zeros,
             function=task.function,
+            audit=task.audit,
             progress=progress_report(report, scene.exact.t_end),
         )
         solution = _solution(task, enclosed, feed.finished())
@@ -157,7 +160,13 @@ def _solution(task: ProofTask, enclosed: Any, approximant: Run) -> Solution:
         run=Source.of(approximant),
         checks=(check,),
         pilot_s=task.pilot.cpu_s,
-        proof=Proof(enclosed, transit_radius, _agreement_bits(grid, gaps, approximant)),
+        proof=Proof(
+            enclosed,
+            transit_radius,
+            _agreement_bits(grid, gaps, approximant),
+            audited=enclosed.audited,
+            audit_s=enclosed.audit_s,
+        ),
     )
 
 

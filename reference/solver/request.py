@@ -57,7 +57,7 @@ class ProofOptions:
     """What a proof at the level enclosed is to include besides its digits.
 
     Attributes:
-        audit: whether FLINT alone proves the same run again, which has to give the same digits.
+        audit: whether all that compiled code returns for the proof is checked, step by step.
         confirm: what heyoka confirms in another formulation: "whole", "sampled" or "none".
         function: whether to make the golden function as well.
     """

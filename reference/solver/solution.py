@@ -84,7 +84,8 @@ class Proof:
             returned, which is compared with what is written.
         transit_radius: the largest radius of a transit's time in s.
         agreement_bits: bits to which its run agrees with it.
-        audited: whether FLINT alone proves it too.
+        audited: whether all that compiled code returned for it was checked, so that FLINT alone
+            proves the same.
         confirmed: what heyoka's run in another formulation agrees with to every printed digit:
             "whole", all rows and transits; "sampled", a tenth of the grid's intervals, each from
             its first row; or "none".

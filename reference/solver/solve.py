@@ -56,8 +56,8 @@ def solve(
             words.
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that
             is installed. At the level confirmed the run that confirms is always heyoka's.
-        audit: at the level enclosed, prove the same run again by FLINT alone, and require the same
-            digits.
+        audit: at the level enclosed, check all that compiled code returns for the proof, step by
+            step, so that FLINT alone proves the same digits.
         confirm: at the level enclosed, what heyoka confirms as well, in another formulation:
             "whole", every digit and transit, on a second core; "sampled", the end of a tenth of the
             grid's intervals, each from its first row; or "none".

@@ -108,11 +108,12 @@ class Piece:
 
     @cached_property
     def norms(self) -> Norms:
-        """The norms of d, τ, p' and τ': by sums of digits, or by FLINT's polynomials."""
-        if isinstance(self.rows, Digits) and not self.balls.flint_only:
+        """The norms of d, τ, p' and τ': by sums of digits, or of others by FLINT's polynomials."""
+        if isinstance(self.rows, Digits):
             from .digits import norms
 
-            return Norms(*norms(self.rows.table, self.constants.integers))
+            bounds = norms(self.rows.table, self.constants.integers, audit=self.balls.audit)
+            return Norms(*bounds)
         return Norms(*(total(f, 2 * self.step.bits) for f in self._exact_polynomials()))
 
     def _exact_polynomials(self) -> list[fmpz_poly]:

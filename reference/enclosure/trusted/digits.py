@@ -2,7 +2,8 @@
 
 Nothing here is a float, and no sum can overflow: `check` refuses what could. A digit of row q stands for
 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
-`multiply` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, but where FLINT audits.
+`multiply` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, unless `audit` checks
+what they return.
 
 | name                       | symbol                                                         |
 |----------------------------|----------------------------------------------------------------|
@@ -23,6 +24,7 @@ from flint import arb, fmpz, fmpz_poly
 from ...numbers.taylor_step import DIGIT_BITS
 from ...system.machine_code import kept
 from .balls import demand
+from .shapes import CompiledSums
 
 MASK = (1 << DIGIT_BITS) - 1
 BLOCK = 8  # orders of a factor that are taken at once
@@ -111,7 +113,10 @@ def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
 
 @kept()
 def sums(series: Any, constants: Any, more: int) -> Any:
-    """Return the sums over all orders of the digits of |c|, by rows: of d, of τ, of p', and of n |c| of τ."""
+    """Return the sums over all orders of the digits of |c|, by rows: of d, of τ, of p', and of n |c| of τ.
+
+    The second array has the digits of all c after the carry: by rows, results and orders.
+    """
     # a kernel: one array of digits, from the products to their sums
     _, count, width = series.shape
     digits = np.zeros((TOP_ROWS + count + more, RESULTS, 2 * (width - BLOCK)), np.int64)
@@ -149,7 +154,7 @@ def sums(series: Any, constants: Any, more: int) -> Any:
                 absolute[i, t] += x
                 if i == TAU:
                     absolute[TAU_RATE, t] += n * x
-    return absolute
+    return absolute, digits
 
 
 @lru_cache(maxsize=64)  # steps of the same length follow each other
@@ -163,13 +168,14 @@ def split(count: int, *integers: fmpz) -> Any:
     return np.array(rows)
 
 
-def norms(rows: Any, integers: Any, more: int = 1) -> list[arb]:
+def norms(rows: Any, integers: Any, more: int = 1, audit: Any = None) -> list[arb]:
     """Return sums of |c| of d (three components), of τ, of p' (three components) and of τ' (n |c|).
 
     Args:
         rows: digits of x, m, w, λ, shape (4, L, orders).
         integers: ω, ω², γ, c_m, c_w over 2^(22 L - 1).
         more: rows of a product that are summed beyond L; what is left out is bounded, with L - 1 it is nothing.
+        audit: an `Audit`, which takes what compiled code returned.
     """
     _, count, orders = rows.shape
     constants = split(count, *integers, fmpz(1) << DIGIT_BITS * count - 1)
@@ -180,7 +186,10 @@ def norms(rows: Any, integers: Any, more: int = 1) -> list[arb]:
     inner[: TENSION + 1] = rows
     inner[X_RATE : W_RATE + 1, :, :-1] = np.arange(1, orders) * rows[:TENSION, :, 1:]
     inner[ONE, :, 0] = constants[UNIT]
-    lowest_first = sums(series, constants, more)[:, ::-1].tolist()
+    absolute, digits = sums(series, constants, more)
+    if audit is not None:
+        audit.take(CompiledSums(rows, constants, absolute, digits, count + more))
+    lowest_first = absolute[:, ::-1].tolist()
 
     # (6.13): what is left out of at most 2 O coefficients, in units of the last row
     cut = 0

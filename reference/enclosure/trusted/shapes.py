@@ -149,6 +149,16 @@ class Tube(NamedTuple):
     a: arb
 
 
+class CompiledSums(NamedTuple):
+    """What compiled code made of a step, from which digits, and what it returned."""
+
+    rows: Any  # of x, m, w, λ, shape (4, L, orders)
+    constants: Any  # of `system.Integers` and 2^B, shape (6, L)
+    absolute: Any  # sums of digits, shape (8, rows)
+    digits: Any  # shape (rows, 7, columns)
+    product_rows: int  # the lowest rows, in which products are summed
+
+
 class Covered(NamedTuple):
     """A step's piece, with the tube about its polynomials in which the motion stays."""
 

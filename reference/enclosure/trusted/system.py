@@ -38,7 +38,7 @@ class SceneBalls:
     Exact zeros of the inputs stay exact.
     """
 
-    def __init__(self, inputs: Any, prec: int, flint_only: bool = False) -> None:
+    def __init__(self, inputs: Any, prec: int, audit: Any = None) -> None:
         demand(
             inputs.drag >= 0 and inputs.length > 0,
             "not a pendulum: the theorems take a length > 0 and a drag >= 0",
@@ -47,7 +47,7 @@ class SceneBalls:
         # what is proved with these balls is proved of this: the inputs, or a box of them
         self.claim: Any = inputs
         self.prec = prec
-        self.flint_only = flint_only  # without sums of digits
+        self.audit = audit  # takes what compiled code returns for a step
         with ctx.workprec(prec):
             self.length = ball(inputs.length)
             self.drag = ball(inputs.drag)

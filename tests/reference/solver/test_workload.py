@@ -35,9 +35,9 @@ def test_parts_count_by_their_cost_and_are_named_while_they_go_on():
 def test_work_in_the_background_counts_as_far_as_it_has_come(tmp_path):
     told: list[float] = []
     words: list[str] = []
-    workload = Workload(told.append, END_S, {"proving": 1.0, "auditing": 1.0})
+    workload = Workload(told.append, END_S, {"proving": 1.0, "confirming": 1.0})
     with in_background(True, child.report_and_wait, 6.0, str(tmp_path / "go_on")) as work:
-        workload.watch("auditing", work)
+        workload.watch("confirming", work)
         while work.reached < 6.0:
             time.sleep(0.01)
         with ACTIVITY.heard_by(words.append):
@@ -46,7 +46,7 @@ def test_work_in_the_background_counts_as_far_as_it_has_come(tmp_path):
         assert work.result() == "done"
         workload.part("proving")(60.0)
     assert told == [18.0, 60.0]
-    assert words == ["proving and auditing"]
+    assert words == ["proving and confirming"]
 
 
 def test_nobody_asks_and_nothing_is_told():
