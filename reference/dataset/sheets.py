@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from ..numbers.columns import GRID, STATE, TRANSITS
-from ..numbers.precision import fixed_decimal, outward, rounded_up
+from ..numbers.precision import endpoint_text, fixed_decimal, rounded_up
 from ..numbers.table import Integers, Table, integers
 from ..numbers.zeros import XDOT, Zeros
 from ..scenes.fields import SECTION_SEPARATOR
@@ -166,7 +166,7 @@ def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
 def open_intervals(intervals: Iterable[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
     """Return intervals that may hold other zeros as text, rounded outwards, with their parity."""
     return [
-        {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
+        {"from_s": endpoint_text(low, -1), "to_s": endpoint_text(high, 1), "parity": parity}
         for low, high, parity in intervals
     ]
 
