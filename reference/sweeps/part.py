@@ -15,7 +15,7 @@ from ..engines.batch_interface import OK, STOPPED, Batch, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
-from .axes import TEXTS
+from .axes import WORD_FIELDS
 from .estimate import columns_of, judged, passages
 from .parquet import TRANSIT_COLUMNS
 from .promote import Promoted, promoted
@@ -95,7 +95,7 @@ class Part:
         """Fail a row with a wrong value, and keep those of its values that are numbers."""
         self.fail(place, Status.INVALID, reason)
         for key, text in texts.items():
-            if key not in TEXTS:
+            if key not in WORD_FIELDS:
                 with suppress(ValueError):
                     self.columns[key][place] = float(text)
 
