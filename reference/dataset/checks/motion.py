@@ -361,7 +361,7 @@ def _off(
         table: its rows by the run.
         distance: the largest distance of the two runs, by column.
     """
-    printed, scale = sheet.integers(table.columns)
+    printed, scale = sheet.scaled_integers(table.columns)
     unit = scale << table.bits
     sentences = []
     for i, name in enumerate(table.columns):

@@ -67,7 +67,7 @@ def _moments(files: DatasetFiles, kind: Kind, sheet: Sheet) -> _Moments:
     At a transit the velocity is (0, vy, -y vy / z).
     """
     printed = ("x", "y", "z", "vy") if kind == "transits" else STATE
-    columns, unit = sheet.integers(printed)
+    columns, unit = sheet.scaled_integers(printed)
     bounds = [files.manifest.bound(kind, name) for name in printed]
     if kind == "transits":
         # xdot is zero by definition, and zdot follows
@@ -155,7 +155,7 @@ class _Moments:
 
     def with_another_acceleration(self, transits: Sheet) -> Iterator[str]:
         """Check xddot, as the table of transits prints it."""
-        (printed,), unit = transits.integers(("ax",))
+        (printed,), unit = transits.scaled_integers(("ax",))
         bound = self.files.manifest.bound("transits", "ax")
         values = self.values(_xddot)
         rows = zip(self.names, values, self.allowed(_xddot), printed, self._known, strict=True)
