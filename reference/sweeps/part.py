@@ -16,7 +16,7 @@ from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .axes import WORD_FIELDS
-from .estimate import columns_of, judged, passages
+from .estimate import columns_of, errors_by_moved_runs, passages
 from .parquet import TRANSIT_COLUMNS
 from .promote import Promoted, promoted
 from .request import Request
@@ -239,7 +239,7 @@ def _by_engine(
     """Solve rows by one engine; return as `_side_by_side` does."""
     options = request.run_options
     run = engine.solve(rows, options)
-    errors, stopped = judged(engine, rows, run)
+    errors, stopped = errors_by_moved_runs(engine, rows, run)
     columns, unknown = columns_of(rows, run, errors)
     part.fill(places, {**columns, "status": Status.OK.value})
     part.columns["engine"][places] = engine.name
