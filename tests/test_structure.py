@@ -131,7 +131,7 @@ PUBLIC = {
     "Swept UnreachableError load load_ranges load_scene parse_scene prove_ranges scene_ids "
     "solve trajectory write",
     "reference.commands.options": "Conflict as_command refuse_conflicts",
-    "reference.commands.progress": "progress",
+    "reference.commands.progress": "Move progress",
     "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections "
     "Uncertain Workers check_workers chosen completion emit option refuse "
     "replacements scene_argument stoppable widths_by_name",
@@ -170,7 +170,8 @@ PUBLIC = {
     "reference.solver.uncertain": "exact_texts widths_of",
     "reference.status": "Status",
     "reference.sweeps.axes": "WORD_FIELDS",
-    "reference.sweeps.request": "Request Settings worth_compiling",
+    "reference.sweeps.background": "compile_for_the_next",
+    "reference.sweeps.request": "Request Settings",
     "reference.sweeps.store": "Store",
     "reference.sweeps.sweep": "checked_request run",
     "reference.system": "cache",
