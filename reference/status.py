@@ -39,5 +39,5 @@ class Status(StrEnum):
 
     @property
     def words(self) -> str:
-        """Return the word as it is read, such as "out of time"."""
+        """The word as it is read, such as "out of time"."""
         return self.value.replace("_", " ")

@@ -169,7 +169,7 @@ PUBLIC = {
     "reference.solver.solve": "roughly",
     "reference.solver.uncertain": "exact_texts widths_of",
     "reference.status": "Status",
-    "reference.sweeps.axes": "TEXTS",
+    "reference.sweeps.axes": "WORD_FIELDS",
     "reference.sweeps.background": "compile_for_the_next",
     "reference.sweeps.request": "Request Settings",
     "reference.sweeps.store": "Store",

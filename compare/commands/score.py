@@ -40,7 +40,7 @@ MAX_REPEATS = 1000
 TIMEOUT_S = 600.0  # default of --timeout
 REPEATS = 3  # default of --repeats
 
-_UNUSED = {  # fields of a scene that make no difference to a score
+_FIELDS_WITHOUT_EFFECT = {
     "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
 }
@@ -251,7 +251,8 @@ class ScoreOptions:
         if self.named_ranges is not None:
             return self.named_ranges.scene
         fields = {"--t-end": ("run.t_end", self.t_end), "--inputs": ("inputs", self.reading)}
-        return load_scene(self.scene_word, replacements(self.set_, fields, _UNUSED, announce))
+        chosen_values = replacements(self.set_, fields, _FIELDS_WITHOUT_EFFECT, announce)
+        return load_scene(self.scene_word, chosen_values)
 
     @cached_property
     def ranges(self) -> Ranges | None:
@@ -267,6 +268,11 @@ class ScoreOptions:
         widths = widths_by_name(self.uncertain, self.scene)
         return ranges_to_prove(self.scene, widths) if widths else None
 
+
+# ranges and the passages of sections are compared without a verdict on a trajectory
+_OF_VERDICTS = (
+    "--run --approximation --covers --baseline --plot --junit --github --as-model --no-diagnosis"
+)
 
 # in the order in which they are reported
 _CONFLICTS = [
@@ -302,12 +308,12 @@ _CONFLICTS = [
         lambda typed: typed.named_ranges is not None,
     ),
     Conflict(
-        "--run --approximation --covers --baseline --plot --junit --github --as-model --no-diagnosis",
+        _OF_VERDICTS,
         BESIDE_RANGES,
         lambda typed: typed.ranges is not None,
     ),
     Conflict(
-        "--run --approximation --covers --baseline --plot --junit --github --as-model --no-diagnosis",
+        _OF_VERDICTS,
         "together with --section",
         lambda typed: typed.section is not None,
     ),
@@ -331,6 +337,7 @@ def _score(options: ScoreOptions) -> None:
     chosen("--inputs", options.inputs, _readings())
     check_positive("--tolerance", options.tolerance, "metres")
     refuse_conflicts(options, _CONFLICTS)
+    _check_standard_input(options)
     if options.ranges is not None:
         _compare_with_ranges(options, options.ranges, naming)
         return
@@ -363,18 +370,25 @@ def _naming(options: ScoreOptions) -> Naming:
     return Naming(tuple(columns), tuple(units))
 
 
-def _check_values(options: ScoreOptions) -> None:
-    """Refuse values that are out of range, a second use of stdin, and a picture that cannot be written."""
-    covers = options.covers
-    if covers is not None and not 0 < covers <= 1:
-        expected = "a share of the scene's span, above 0 and up to 1"
-        raise InputError("--covers", f"{covers:g}", expected)
+def _check_standard_input(options: ScoreOptions) -> None:
+    """Refuse a second use of standard input.
 
+    Raises:
+        InputError: `-` stands for more than one file.
+    """
     files = [*(options.candidates or ()), options.transits]
     if files.count("-") > 1:
         raise InputError(
             "CANDIDATE", "- more than once", "standard input once", "It can be read only once."
         )
+
+
+def _check_values(options: ScoreOptions) -> None:
+    """Refuse values that are out of range, and a picture that cannot be written."""
+    covers = options.covers
+    if covers is not None and not 0 < covers <= 1:
+        expected = "a share of the scene's span, above 0 and up to 1"
+        raise InputError("--covers", f"{covers:g}", expected)
 
     check_positive("--timeout", options.timeout)
     check_positive("--setting", options.setting)
@@ -410,7 +424,7 @@ def _outcomes_of_scene(options: ScoreOptions, judging: Judging) -> list[Outcome]
         InputError: none is given.
         FoucaultError: the only one cannot be judged, and no report has to say so.
     """
-    outcomes = list(_trials(options, judging))
+    outcomes = list(_outcomes(options, judging))
     if not outcomes:
         expected = "a file, - for stdin, --run, --transits or --approximation"
         raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
@@ -422,7 +436,7 @@ def _outcomes_of_scene(options: ScoreOptions, judging: Judging) -> list[Outcome]
     return outcomes
 
 
-def _trials(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
+def _outcomes(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
     """Judge one candidate after the other; transits are one of their own only if they are alone."""
     scene = options.scene
     transits = options.transits
@@ -432,7 +446,7 @@ def _trials(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
             yield judging.file(scene, file, times)
 
     if options.run is not None:
-        yield _trial_of_program(options, judging, options.run)
+        yield _outcome_of_program(options, judging, options.run)
 
     if options.approximation is not None:
         yield judging.approximation(scene, options.approximation, transits)
@@ -442,13 +456,13 @@ def _trials(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
         yield judging.transits(scene, transits)
 
 
-def _trial_of_program(options: ScoreOptions, judging: Judging, command: str) -> Outcome:
-    """Run a program and judge its output."""
+def _outcome_of_program(options: ScoreOptions, judging: Judging, run: str) -> Outcome:
+    """Run a program by its command and judge its output."""
     from .experimenting import Runnable
 
     timeout_s = TIMEOUT_S if options.timeout is None else options.timeout
     repeats = REPEATS if options.repeats is None else options.repeats
-    program = Runnable(options.scene, command, options.setting, timeout_s, options.out)
+    program = Runnable(options.scene, run, options.setting, timeout_s, options.out)
     if options.experiments:
         program.check()
     name = options.name or "the program"

@@ -28,11 +28,26 @@ PART_MARK = "~"
 ABSENT = "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
-BUSY = 1.0
+MAX_LOAD = 1.0
 # difference of repeated costs over their median; with more, ratios of costs are doubtful
-SPREAD = 0.2
+MAX_SPREAD = 0.2
 
-TEXTS = texts_of(__file__)  # above the tables
+# the columns of the table of all rows; the reason of a failure follows
+_TEXT_COLUMNS = ("", "method", "formulation", "setting", "status")
+_NUMBER_COLUMNS = (
+    "error m",
+    "end error m",
+    "transit error s",
+    "h drift",
+    "CPU s",
+    "spread",
+    "compile s",
+    "evaluations",
+    "steps",
+    "last t, s",
+)
+
+CAPTIONS = texts_of(__file__)
 
 
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
@@ -60,7 +75,7 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
             cells.append(strong(cpu(cpu_s)) if is_cheapest else cpu(cpu_s))
         table.append([label, *cells])
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return PageTable(columns, table).html(TEXTS["costs"])
+    return PageTable(columns, table).html(CAPTIONS["costs"])
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -71,18 +86,22 @@ def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
         for row in front(rows, bound_m)
     ]
     columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
-    return PageTable(columns, cells).html(TEXTS["front"])
+    return PageTable(columns, cells).html(CAPTIONS["front"])
 
 
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
     """Return all rows with every measured value, method by method from the loosest setting to the tightest."""
-    best = {row.key for row in front(rows, bound_m)}
-    columns = dict.fromkeys(_TEXTS, "") | dict.fromkeys(_NUMBERS, "number") | {"reason": "line"}
+    front_keys = {row.key for row in front(rows, bound_m)}
+    columns = (
+        dict.fromkeys(_TEXT_COLUMNS, "")
+        | dict.fromkeys(_NUMBER_COLUMNS, "number")
+        | {"reason": "line"}
+    )
     table = []
-    kinds = []
+    row_classes = []
     for curve in curves(rows):
         for row in curve.rows:
-            on_front = row.key in best
+            on_front = row.key in front_keys
             classes = []
             if row is curve.rows[0]:
                 classes.append("first")
@@ -90,25 +109,10 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
                 classes.append("front")
             if row.failed:
                 classes.append("failed")
-            kinds.append(" ".join(classes))
+            row_classes.append(" ".join(classes))
             cells = _cells_of(row, on_front)
             table.append([cells[name] for name in columns])
-    return PageTable(columns, table, kinds).html(TEXTS["rows"])
-
-
-_TEXTS = ("", "method", "formulation", "setting", "status")
-_NUMBERS = (
-    "error m",
-    "end error m",
-    "transit error s",
-    "h drift",
-    "CPU s",
-    "spread",
-    "compile s",
-    "evaluations",
-    "steps",
-    "last t, s",
-)
+    return PageTable(columns, table, row_classes).html(CAPTIONS["rows"])
 
 
 def _cells_of(row: Row, on_front: bool) -> dict[str, str]:
@@ -141,11 +145,12 @@ def failures(rows: Sequence[Row]) -> Html | None:
     cells = []
     by_reason = grouped(failed, lambda pair: (pair[0], pair[1].status, pair[1].reason))
     for (label, status, reason), group in by_reason.items():
-        reached = {f"{row.reached_t:g}" for _, row in group if row.reached_t is not None}
+        times_s = sorted(row.reached_t for _, row in group if row.reached_t is not None)
+        reached = ", ".join(dict.fromkeys(f"{t:g}" for t in times_s))
         settings = ", ".join(setting(row) for _, row in group)
-        cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
+        cells.append((label, settings, status.words, reached, reason))
     columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
-    return PageTable(columns, cells, ["failed"] * len(cells)).html(TEXTS["failed"])
+    return PageTable(columns, cells, ["failed"] * len(cells)).html(CAPTIONS["failed"])
 
 
 def words(statuses: Collection[Status]) -> Html:
@@ -193,7 +198,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
         "licence": "",
         "extra": "",
     }
-    return PageTable(columns, table).html(TEXTS["orders"])
+    return PageTable(columns, table).html(CAPTIONS["orders"])
 
 
 def observed(order: ObservedOrder | None) -> str:
@@ -219,9 +224,9 @@ def text_table(document: dict[str, Any]) -> str:
     rows = rows_of(document)
     reference = document["reference"]
     bound_m = float(reference["bound_m"])
-    span = f"{document['scene']}: {document['t_end']:g} s"
+    heading = f"{document['scene']}: {document['t_end']:g} s"
     lines = [
-        f"{span}, reference {reference['level']}, bound {bound_m:.1e} m",
+        f"{heading}, reference {reference['level']}, bound {bound_m:.1e} m",
         f"load: {busy(rows)}",
         "",
         *_measured_as_text(rows, bound_m),
@@ -229,22 +234,22 @@ def text_table(document: dict[str, Any]) -> str:
         f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span, so without its "
         "error (see --limit)",
     ]
-    failed = {row.status for row in rows if row.failed}
-    if failed:
-        lines += ["", "Failed:", *_failed_as_text(rows), "", *advice(failed)]
+    statuses = {row.status for row in rows if row.failed}
+    if statuses:
+        lines += ["", "Failed:", *_failed_as_text(rows), "", *advice(statuses)]
     lines += [*_orders_as_text(rows, bound_m), "", *sentences(document)]
     return "\n".join(lines) + "\n"
 
 
 def _measured_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
     """Return the rows that did not fail as lines of text."""
-    best = {row.key for row in front(rows, bound_m)}
+    front_keys = {row.key for row in front(rows, bound_m)}
     table = []
     for curve in curves(rows):
         for row in curve.rows:
             if row.failed:
                 continue
-            mark = "*" if row.key in best else ""
+            mark = "*" if row.key in front_keys else ""
             errors = (number(row.error_m), transit_error(row), number(row.h_drift))
             costs_shown = (cost(row), count(row.rhs_evaluations))
             table.append((mark, curve.label, setting(row), *errors, *costs_shown))
@@ -300,7 +305,7 @@ def cost(row: Row) -> str:
 
 
 def count(value: int | None) -> str:
-    """Return a count with thin spaces between thousands; empty for None."""
+    """Return a count with narrow no-break spaces between thousands; empty for None."""
     return "" if value is None else f"{value:,}".replace(",", "\u202f")
 
 
@@ -324,8 +329,8 @@ def busy(rows: Sequence[Row | Cell]) -> str:
         )
     text = "; ".join(measured) or "not known"
     doubt = "ratios of costs drift too, most where vectors are wide (AVX-512)"
-    if load > BUSY:
+    if load > MAX_LOAD:
         return f"{text}. The machine was busy: {doubt}"
-    if spread > SPREAD:
+    if spread > MAX_SPREAD:
         return f"{text}. Costs were uneven: {doubt}"
     return text

@@ -185,11 +185,11 @@ def check(request: Request, path: Path) -> None:
         InputError: a wrong path, other than one or two fields that are numbers, or neither quantity
             is wanted.
     """
-    from reference.sweeps.axes import TEXTS
+    from reference.sweeps.axes import WORD_FIELDS
 
     check_target(path)
     table = request.table
-    if table.typed is None or len(table.shape) > 2 or set(table.values) & set(TEXTS):
+    if table.typed is None or len(table.shape) > 2 or set(table.values) & set(WORD_FIELDS):
         expected = "one or two fields varied by --over, both numbers"
         raise InputError("--plot", str(path), expected, "Or draw the columns.")
     if not _drawn(request):

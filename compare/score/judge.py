@@ -51,9 +51,10 @@ from .verdict import Score
 
 # readings of the scene's numbers; auto: by the candidate's precision
 READINGS = ("auto", "decimal", "binary64")
-_ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
-SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
-_DOUBT = 3  # times the reference's bound, which each of the three coordinates may be off by
+_ROUGHLY = 1e-3  # largest error of a cheap run, over the tolerance
+# reach of a candidate over that of the truth: below it the tolerance follows from the candidate's
+SMALL = 0.1
+_DOUBT = 3  # times the reference's bound: each of the three coordinates may be off by it
 
 
 @dataclass(frozen=True)
@@ -257,8 +258,8 @@ def _score_of(trial: _Trial, progress: Progress) -> Score:
     for golden, truth in _truths(trial, progress):
         score = _score_by(golden, truth, trial)
         if _decides(score):
-            break
-    return score
+            return score
+    return score  # by the closest truth there is, which may leave a doubt
 
 
 def _truths(trial: _Trial, progress: Progress) -> Iterator[tuple[Golden | Solution, Dense]]:
@@ -266,16 +267,16 @@ def _truths(trial: _Trial, progress: Progress) -> Iterator[tuple[Golden | Soluti
     candidate = trial.candidate
     problem = trial.problem
     if not candidate.extended:
-        ships = with_function(problem)
-        if ships is None:
+        dataset = with_function(problem)
+        if dataset is None:
             transits = candidate.transits is not None
             rough = roughly_solved(problem, candidate.t, transits, progress.report)
             if rough is not None:
                 yield rough
         else:
-            truth = by_function(ships, candidate.t)
+            truth = by_function(dataset, candidate.t)
             if truth is not None:
-                yield ships, truth
+                yield dataset, truth
 
     digits = problem.run.digits if candidate.extended else DIGITS
     within = FINE if candidate.extended else WITHIN
@@ -353,8 +354,8 @@ def _decides(score: Score) -> bool:
     """Return whether a more accurate truth would leave the verdict as it is."""
     if in_doubt(score):
         return False
-    is_proven = isinstance(score.golden, Golden)
-    return is_proven or score.errors.bound_m <= _ROUGHLY * score.tolerance_m
+    is_dataset = isinstance(score.golden, Golden)  # proved or confirmed, far below any tolerance
+    return is_dataset or score.errors.bound_m <= _ROUGHLY * score.tolerance_m
 
 
 def in_doubt(score: Score) -> bool:

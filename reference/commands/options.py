@@ -17,11 +17,18 @@ Chosen = TypeVar("Chosen")
 
 @dataclass(frozen=True)
 class Conflict:
-    """Options that would have no effect in a case, which the error message names."""
+    """Options that would have no effect in a case, which the error message names.
 
-    options: str  # as they are typed, separated by spaces
-    case: str  # "without --run"
-    applies: Callable[[Any], bool]  # whether the chosen options are such a case
+    Attributes:
+        options: as they are typed, separated by spaces.
+        case: such as "without --run".
+        applies: returns whether the chosen options are such a case. It may load the scene that they
+            name, and raise InputError if that cannot be read.
+    """
+
+    options: str
+    case: str
+    applies: Callable[[Any], bool]
 
 
 def as_command(options: type[Chosen], run: Callable[[Chosen], None]) -> Callable[..., None]:
@@ -82,7 +89,8 @@ def refuse_conflicts(options: Any, conflicts: Iterable[Conflict]) -> None:
     """Refuse options that would have no effect beside the others.
 
     Raises:
-        InputError: one was given that has no effect; it names the option and the case.
+        InputError: one was given that has no effect; the message names the option and the case. Or
+            a case depends on a scene that cannot be read.
     """
     values = values_by_word(options)
     for conflict in conflicts:

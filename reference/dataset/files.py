@@ -41,8 +41,8 @@ LINE_ENDS = (
 
 
 @dataclass(frozen=True)
-class Files:
-    """The files of a dataset, read once: those of their hashes, well formed.
+class DatasetFiles:
+    """The files of a dataset, read once: each has the hash of its record and is well formed.
 
     Attributes:
         folder: their folder.
@@ -63,7 +63,7 @@ class Files:
     foreign: list[str]
 
 
-def read_files(folder: Path) -> Files:
+def read_files(folder: Path) -> DatasetFiles:
     """Read a dataset and check its seal, its hashes and the form of its tables.
 
     Raises:
@@ -95,7 +95,7 @@ def read_files(folder: Path) -> Files:
 
     function = _function(folder, texts, coefficients)
     foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
-    return Files(folder, manifest, scene, texts, function, tables, foreign)
+    return DatasetFiles(folder, manifest, scene, texts, function, tables, foreign)
 
 
 def _scene(folder: Path, manifest: Manifest) -> Scene:
@@ -113,11 +113,11 @@ def _scene(folder: Path, manifest: Manifest) -> Scene:
 
 
 def _checked_bytes(path: Path, record: FileRecord) -> bytes:
-    """Return the content of a file of the size and hash in its record.
+    """Return the content of a file, if it has the size and hash of its record.
 
     Raises:
         OSError: it cannot be read.
-        ValueError: it has another size or hash; it says which.
+        ValueError: the file has another size or hash; the message says which.
     """
     size = path.stat().st_size
     wrong_size = f"{size} bytes, the manifest says {record.bytes}"
@@ -159,9 +159,10 @@ def read_manifest(folder: Path) -> Manifest:
     _check_is_dataset(folder)
     text = _manifest_text(folder)
     manifest = _parsed(folder, text)
-    if manifest.text() == _with_lf(text.encode()).decode() != text:
-        raise DatasetError(str(folder), [f"{MANIFEST}: {LINE_ENDS}"])
-    if manifest.text() != text:
+    canonical_text = manifest.text()
+    if text != canonical_text:
+        if _with_lf(text.encode()).decode() == canonical_text:
+            raise DatasetError(str(folder), [f"{MANIFEST}: {LINE_ENDS}"])
         form = "the form in which it is written: spaces, the order of keys, or a key twice"
         raise _refused(folder, f"is not in {form}")
     if manifest.expected_seal() != manifest.seal:
@@ -225,7 +226,7 @@ def _parsed(folder: Path, text: str) -> Manifest:
         at_place = f" at {place}" if place else ""
         raise _refused(folder, f"breaks the schema{at_place}: {first['msg']}") from None
     except (ValueError, RecursionError) as error:
-        raise _refused(folder, f"is not JSON in UTF-8: {error}") from None
+        raise _refused(folder, f"breaks the schema: {error}") from None
 
 
 def _refused(folder: Path, problem: str) -> DatasetError:
@@ -252,7 +253,7 @@ def _table(name: str, text: str, manifest: Manifest) -> Sheet:
     """Return a table from its text.
 
     Raises:
-        ValueError: its header, a row or the number of rows is wrong; it says which.
+        ValueError: its header, a row or the number of rows is wrong; the message says which.
     """
     kind: Any = name.partition(".")[0]
     patterns = _patterns(kind, manifest, doubles=name.endswith(".binary64.csv"))
@@ -277,7 +278,7 @@ def _table(name: str, text: str, manifest: Manifest) -> Sheet:
 
 
 def _count(kind: Kind, manifest: Manifest) -> int:
-    """Return the rows that a table should have."""
+    """Return the number of rows that a table should have."""
     if kind == "sections" and manifest.sections:
         return sum(manifest.sections.counts.values())
     return int(getattr(manifest.counts, kind))

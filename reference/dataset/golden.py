@@ -20,7 +20,7 @@ from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
 from ..scenes.fields import Level
 from ..scenes.scene import Scene
-from .files import Files, read_files
+from .files import DatasetFiles, read_files
 from .function import evaluated_grid, evaluated_transits
 from .manifest import FUNCTION, Manifest
 from .place import golden_folder
@@ -179,7 +179,7 @@ def load(name: str | Path) -> Golden:
     )
 
 
-def _printed_tables(files: Files) -> tuple[PrintedTable, PrintedTable]:
+def _printed_tables(files: DatasetFiles) -> tuple[PrintedTable, PrintedTable]:
     """Return grid and transits as printed."""
     bounds = files.manifest.bounds
     without_transits = Sheet(TRANSITS_HEADER, [], {})
@@ -190,7 +190,9 @@ def _printed_tables(files: Files) -> tuple[PrintedTable, PrintedTable]:
     )
 
 
-def _evaluated_tables(files: Files, function: GoldenFunction) -> tuple[PrintedTable, PrintedTable]:
+def _evaluated_tables(
+    files: DatasetFiles, function: GoldenFunction
+) -> tuple[PrintedTable, PrintedTable]:
     """Return grid and transits of a dataset without tables, evaluated in doubles.
 
     Raises:
@@ -213,7 +215,7 @@ class _Sections(dict[str, PrintedTable]):
         raise InputError("sections", word, expected, advice)
 
 
-def _sections(files: Files) -> _Sections:
+def _sections(files: DatasetFiles) -> _Sections:
     """Return the rows of `sections.csv` of each section that the manifest counts."""
     sections = _Sections()
     sheet = files.tables.get("sections.csv")

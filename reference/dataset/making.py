@@ -50,10 +50,10 @@ class Making:
 
     @classmethod
     def of(cls, command: str) -> Making:
-        """Read it off a dataset's command, or off the options in the index of what ships.
+        """Parse the options in a dataset's command, or in the index of shipped datasets.
 
         Raises:
-            ValueError: the command does not say it.
+            ValueError: the command has no such options.
         """
         match = _OPTIONS.search(command)
         if match is None:
@@ -69,7 +69,7 @@ class Making:
 
     @property
     def options(self) -> str:
-        """The options that say it, of a proof."""
+        """The options of `foucault generate` that make the dataset of a proof in this way."""
         words = [ENGINE, self.engine]
         words.append(AUDIT if self.audit else "--no-audit")
         words += [CONFIRM, self.confirm]
@@ -99,10 +99,8 @@ class Making:
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
     """Return how a dataset is made if nothing else is asked for.
 
-    What ships is made as the index says, wherever it is written.
-
-    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two
-    codes.
+    A shipped dataset is made as the index says, wherever it is written. A new one that is to ship
+    is made with limbs, so that heyoka's confirmation is an independent code.
     """
     if ships(folder) or is_of_shipped_scene(scene, name):
         entry = index().get(name)
@@ -125,13 +123,14 @@ def command(scene: Scene, name: str, options: str) -> str:
         words += ["--section", f"'{section}'"]
 
     shipped = shipped_scene(scene)
-    is_users_own = shipped is scene
-    if shipped.uncertain and not is_users_own:
+    is_own_scene = shipped is scene
+    if shipped.uncertain and not is_own_scene:
         words += ["--uncertain", "none"]
-    changed = changes_in(name) if is_users_own else changes(scene, shipped)
+    changed = changes_in(name) if is_own_scene else changes(scene, shipped)
     for change in changed:
         if not change.startswith(_OPTION_FIELDS):
             words += ["--set", change]
-    if f".{scene.inputs}" in name:
+    id_with_reading = f"{scene.id}.{scene.inputs}"
+    if name.partition("+")[0] == id_with_reading:
         words += ["--set", f"inputs={scene.inputs}"]
     return " ".join(words)

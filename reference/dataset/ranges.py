@@ -13,7 +13,7 @@ from typing import Any
 from ..engines.plan import Report
 from ..errors import DatasetError, FoucaultError, InputError, checked_path
 from ..numbers.columns import SECTION, STATE, TRANSITS
-from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
+from ..numbers.precision import endpoint_text, fixed_decimal, magnitude, rounded_up
 from ..numbers.zeros import XDOT, Zeros
 from ..scenes.scene import parse_scene
 from ..solver.ranges import Intervals, Ranges
@@ -261,7 +261,7 @@ def ends(low: Fraction, high: Fraction, places: int | None = None) -> tuple[str,
     """
     if places is None:
         places = _places_of(low, high)
-    return outward(low, -1, places), outward(high, 1, places)
+    return endpoint_text(low, -1, places), endpoint_text(high, 1, places)
 
 
 def _places_of(low: Fraction, high: Fraction) -> int:

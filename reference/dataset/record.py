@@ -203,7 +203,7 @@ def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:
     """Return h of the first row in m²/s², and its largest change over the rows, rounded up."""
     bits = bits_of(scene.run.digits) + INVARIANT_BITS
     k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
-    states, unit = grid.integers(STATE)
+    states, unit = grid.scaled_integers(STATE)
     x, y, z, vx, vy, vz = (FixedPoint.column(column, unit, bits) / k.length for column in states)
     h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
     values = h.fractions()

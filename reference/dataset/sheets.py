@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from ..numbers.columns import GRID, STATE, TRANSITS
-from ..numbers.precision import fixed_decimal, outward, rounded_up
+from ..numbers.precision import endpoint_text, fixed_decimal, rounded_up
 from ..numbers.table import Integers, Table, integers
 from ..numbers.zeros import XDOT, Zeros
 from ..scenes.fields import SECTION_SEPARATOR
@@ -25,7 +25,13 @@ NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}
 
 @dataclass(frozen=True)
 class Sheet:
-    """A printed table: header, rows of text, and digits after the point per column."""
+    """A printed table.
+
+    Attributes:
+        header: the names of the columns.
+        rows: the cells of each row as text.
+        decimals: the number of digits after the point, by column.
+    """
 
     header: tuple[str, ...]
     rows: list[tuple[str, ...]]
@@ -33,17 +39,17 @@ class Sheet:
 
     def numbers(self, columns: tuple[str, ...]) -> Iterator[list[Fraction]]:
         """Yield, row by row, the printed numbers of some columns."""
-        places = [self.header.index(name) for name in columns]
+        indices = [self.header.index(name) for name in columns]
         for row in self.rows:
-            yield [Fraction(Decimal(row[i])) for i in places]
+            yield [Fraction(Decimal(row[i])) for i in indices]
 
-    def integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
-        """Return some columns as integers over a common unit, and the unit, a power of ten."""
+    def scaled_integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
+        """Return some columns times a common power of ten, as integers, and that power of ten."""
         texts = []
         decimals = 0
         for name in columns:
-            place = self.header.index(name)
-            column = [row[place] for row in self.rows]
+            index = self.header.index(name)
+            column = [row[index] for row in self.rows]
             decimals = max([decimals, *map(_decimals_in, column)])
             texts.append(column)
         scaled = [integers(_scaled(text, decimals) for text in column) for column in texts]
@@ -55,21 +61,21 @@ class Sheet:
 
 
 def _decimals_in(text: str) -> int:
-    """Return the digits after the point of a decimal."""
+    """Return the number of digits after the point of a decimal."""
     return len(text.partition(".")[2])
 
 
 def _scaled(text: str, decimals: int) -> int:
-    """Return a decimal times a power of ten, which makes it an integer."""
+    """Return a decimal times 10**decimals, which is an integer."""
     whole, _, fraction = text.partition(".")
-    unit: int = 10 ** (decimals - len(fraction))
-    return int(whole + fraction) * unit
+    factor: int = 10 ** (decimals - len(fraction))
+    return int(whole + fraction) * factor
 
 
 def grid_sheet(solution: Solution) -> Sheet:
     """Return `grid.csv`: exact times, and the state at each.
 
-    The release has the numbers of the scene as they are.
+    The row of the release has the scene's own numbers.
     """
     decimals = {"t": exact_decimals(solution.times), **grid_decimals(solution)}
     first, *later = solution.grid.printed(decimals)
@@ -112,9 +118,9 @@ def _zeros(zeros: Zeros[Table], decimals: Mapping[str, int]) -> list[tuple[str, 
 
 
 def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Sheet:
-    """Return a sheet with doubles for its numbers, by column.
+    """Return a sheet whose numbers are replaced by doubles, given by column.
 
-    They have 17 significant digits; behind them they are repeated as hexfloats.
+    Doubles have 17 significant digits, and are repeated as hexfloats after the last column.
     """
     columns = [doubles.get(name) for name in sheet.header]
     rows = []
@@ -136,25 +142,23 @@ def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Shee
 def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
     """Return the doubles nearest to the numbers of a table, by column.
 
-    They are known to more digits than the sheet prints.
-
-    A number smaller than its error bound is noise about zero, and gets the double of the printed
-    decimal.
+    The table has more digits than the sheet prints. A number smaller than its error bound is noise
+    about zero, and gets the double of the printed decimal.
     """
     unit = 1 << table.bits
     doubles = {}
     for i, name in enumerate(table.columns):
-        place = sheet.header.index(name)
+        index = sheet.header.index(name)
         column = []
         for value, error, row in zip(table.values, table.errors, sheet.rows, strict=True):
             is_noise = abs(value[i]) <= error[i]
-            column.append(float(Fraction(row[place])) if is_noise else value[i] / unit)
+            column.append(float(Fraction(row[index])) if is_noise else value[i] / unit)
         doubles[name] = column
     return doubles
 
 
 def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
-    """Return the largest bound of each column as text, rounding to the printed digits included."""
+    """Return the largest bound of each column as text, with the rounding to the printed digits."""
     bounds = table.largest_bounds()
     texts = {}
     for name in table.columns:
@@ -164,9 +168,9 @@ def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
 
 
 def open_intervals(intervals: Iterable[tuple[Fraction, Fraction, str]]) -> list[dict[str, str]]:
-    """Return intervals that may hold other zeros as text, rounded outwards, with their parity."""
+    """Return intervals that may hold further zeros as text, rounded outwards, with their parity."""
     return [
-        {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
+        {"from_s": endpoint_text(low, -1), "to_s": endpoint_text(high, 1), "parity": parity}
         for low, high, parity in intervals
     ]
 

@@ -14,7 +14,7 @@ from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
 from ..solver.solve import solve
 from .checks import function, motion, physics, read_back, scene_check
-from .files import Files, read_files, read_manifest
+from .files import DatasetFiles, read_files, read_manifest
 from .making import AUDIT, Making
 from .manifest import MANIFEST, Content, Manifest, differences
 from .record import generator
@@ -76,7 +76,7 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     return Verification([], foreign, undecided)
 
 
-def _foreign(files: Files) -> list[str]:
+def _foreign(files: DatasetFiles) -> list[str]:
     """Return a note on each file that does not belong to a dataset, at most 20 and a count."""
     notes = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:_MAX_PROBLEMS]]
     more = len(files.foreign) - _MAX_PROBLEMS
@@ -111,7 +111,7 @@ def problems_of(folder: Path) -> list[str]:
         return error.problems[:_MAX_PROBLEMS]
 
 
-def _row_by_row(files: Files) -> list[str]:
+def _row_by_row(files: DatasetFiles) -> list[str]:
     """Return what is wrong with the record and with each row by itself.
 
     The first check that finds a problem ends this: later ones rely on it.
@@ -136,7 +136,7 @@ def _row_by_row(files: Files) -> list[str]:
     return []
 
 
-def _seal_problems(files: Files) -> Iterator[str]:
+def _seal_problems(files: DatasetFiles) -> Iterator[str]:
     """Check the seal of a dataset that ships, in its place or copied from there."""
     manifest = files.manifest
     ships = golden_root() / manifest.id
@@ -198,7 +198,7 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     return lines, []
 
 
-def _made_again(files: Files, report: motion.Progress | None) -> dict[str, Content]:
+def _made_again(files: DatasetFiles, report: motion.Progress | None) -> dict[str, Content]:
     """Return the files of a dataset as its command makes them.
 
     Raises:

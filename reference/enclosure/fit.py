@@ -1,6 +1,8 @@
-"""Proposals of the golden function: ends of its pieces, coefficients, degree. Untrusted: their errors are measured.
+"""Proposes the golden function: the ends, coefficients and degree of its pieces.
 
-Bytes follow from them. So only operations are used that IEEE 754 rounds alike on every machine, one after another.
+The proof does not rely on these proposals: it measures their errors. But the bytes of a dataset
+follow from them, so only operations are used that IEEE 754 rounds alike on every machine, one after
+another.
 """
 
 from __future__ import annotations
@@ -22,10 +24,13 @@ from .trusted.function import CUT, Following, position, variable_error
 from .trusted.shapes import ProvedFunction
 from .trusted.system import SceneBalls
 
-SHALLOW = 0.96  # of the length: a bob that stays so deep, within 16 degrees, has no series of z
-SHARE = 1 / 3  # of the errors that are there anyway: what leaving out coefficients may add
-ROUNDING = 1.95  # of z, in ulp of the length: a piece whose series rounds more is halved
-LEAST = Fraction(1, 1 << 59)  # length of a piece in s
+# depth over the length: a bob that stays so deep, within 16 degrees, has no series of z
+DEEP = 0.96
+# of the errors of the proof and of evaluation: what leaving out coefficients may add
+TRUNCATION_SHARE = 1 / 3
+# rounding of z, in ulp of the length: a piece whose series rounds more is halved
+MAX_ROUNDING_ULP = 1.95
+SHORTEST_PIECE_S = Fraction(1, 1 << 59)
 WIDER = Fraction(GRAIN + 1, GRAIN)  # unit of a step's series that has to reach farther back
 
 
@@ -36,25 +41,25 @@ class FunctionFit:
         self.following = Following(course, 2 if _stays_deep(course.balls) else 3)
 
     def add(self) -> None:
-        """Propose the piece of the step that was proved last; or several, where z rounds much."""
+        """Propose the piece of the step that was proved last, or several if z would round too much."""
         following = self.following
         assert following.covered is not None
         piece = following.covered.piece
         last = double_below(piece.end)
         until = last
-        while Fraction(last) > following.end + LEAST:
+        while Fraction(last) > following.end + SHORTEST_PIECE_S:
             begin = following.end
             end = Fraction(until)
             rows = position(piece, begin, end, following.count)
             series = rows.entries()
-            if self._rounding_of_z(series, variable_error(begin, end)) > ROUNDING:
+            if self._rounding_of_z(series, variable_error(begin, end)) > MAX_ROUNDING_ULP:
                 until = double_below((begin + end) / 2)
             else:
                 following.add(until, [float(c) for c in series])
                 until = last
 
     def _rounding_of_z(self, series: list[arb], lam: int) -> float:
-        """Return how far a series of z rounds, in ulp of the length: its coefficients and values.
+        """Return how far the coefficients and values of a series of z round, in ulp of the length.
 
         It is 0 without a series of z.
         """
@@ -84,17 +89,17 @@ class FunctionFit:
         return self.following.finish(degree)
 
 
-def _degree(sizes: Any, rounding: Any, errors: Any) -> int:
-    """Return the lowest degree that adds no more than SHARE to what is there anyway, at least 0.
+def _degree(truncation: Any, rounding: Any, errors: Any) -> int:
+    """Return the lowest degree, at least 0, whose truncation adds no more than TRUNCATION_SHARE.
 
     Args:
-        sizes: what leaving out each coefficient costs, by piece and component.
+        truncation: what leaving out each coefficient costs, by piece and component.
         rounding: what evaluating it costs.
         errors: those of the proof, by piece and component.
     """
     evaluated = rounding.cumsum(2)[..., -1]
-    tails = sizes[..., ::-1].cumsum(2)[..., ::-1].max(0)
-    needed = tails > SHARE * (evaluated + errors).max(0)[:, None]
+    tails = truncation[..., ::-1].cumsum(2)[..., ::-1].max(0)
+    needed = tails > TRUNCATION_SHARE * (evaluated + errors).max(0)[:, None]
     return max(0, int(needed.sum(1).max()) - 1)
 
 
@@ -104,7 +109,7 @@ def _stays_deep(balls: SceneBalls) -> bool:
     if not (pull > 0 and balls.release[0][2] < 0):
         return False
     aside = size(add(times(1 / pull, balls.c), balls.turned([arb(0), arb(0), arb(1)], 1)))
-    return bool((balls.w0**2 - balls.lambda_minus) / pull - aside > SHALLOW)
+    return bool((balls.w0**2 - balls.lambda_minus) / pull - aside > DEEP)
 
 
 def on_doubles(steps: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
@@ -114,5 +119,7 @@ def on_doubles(steps: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
         far = begin < step.centre - step.h
         own = rescaled(step, WIDER) if far else step
         end = step.centre + step.h * step.high
-        low, begin = (begin - own.centre) / own.h, Fraction(double_below(end))
-        yield own._replace(low=low, high=(begin - own.centre) / own.h)
+        low = (begin - own.centre) / own.h
+        begin = Fraction(double_below(end))
+        high = (begin - own.centre) / own.h
+        yield own._replace(low=low, high=high)

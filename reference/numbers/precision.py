@@ -19,7 +19,8 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-# more than a run's own: its constants and conversions are computed with them, then rounded once
+# Bits beyond a run's precision, with which its constants and conversions are computed before they
+# are rounded
 GUARD_BITS = 64
 DOUBLE_BITS = 53
 LONG_DOUBLE_BITS = 64
@@ -68,7 +69,11 @@ def context(prec: int) -> Any:
 
 
 def to_mpf(value: Fraction, ctx: Any) -> Any:
-    """Return `value`, rounded once to the context's precision."""
+    """Return `value` in the context's precision of p bits, with a relative error below 2**(1 - p).
+
+    The numerator is rounded, then the quotient: a numerator of at most p bits is exact, and then
+    the error is at most 2**-p.
+    """
     return ctx.mpf(value.numerator) / value.denominator
 
 
@@ -122,7 +127,7 @@ def with_decimal_point(whole: int, decimals: int) -> str:
     return f"{sign}{digits[:-decimals]}.{digits[-decimals:]}"
 
 
-def outward(value: Fraction, side: int, decimals: int = 20) -> str:
+def endpoint_text(value: Fraction, side: int, decimals: int = 20) -> str:
     """Return the end of an interval as text, rounded down (side -1) or up (side 1)."""
     scaled = value * 10**decimals
     whole = math.floor(scaled) if side < 0 else math.ceil(scaled)
@@ -130,7 +135,7 @@ def outward(value: Fraction, side: int, decimals: int = 20) -> str:
 
 
 def decimals_for(largest: Fraction, digits: int) -> int:
-    """Return the digits after the point that give a largest number `digits` significant ones."""
+    """Return how many decimals show a column's largest number with `digits` significant digits."""
     return max(0, digits - 1 - magnitude(largest)) if largest else digits
 
 
@@ -157,7 +162,14 @@ def rounded_up(value: Fraction) -> str:
 
 
 def digits_that_hold(value: float, error: float) -> str:
-    """Return a number with the digits that its error leaves, or ± the error if that is larger."""
+    """Return a number with the digits that its error leaves, or ± the error if that is larger.
+
+    Without an error it has all digits of its double; a dash stands for an unknown number or error.
+    """
+    if not math.isfinite(value) or math.isnan(error):
+        return "–"
+    if error == 0:
+        return repr(float(value))
     if error >= abs(value):
         return f"± {error:.1e}"
     first = math.floor(math.log10(abs(value)))

@@ -43,7 +43,7 @@ _CONSTANTS = ("turn_1", "turn_2", "pull_1", "pull_2", "drag")
 
 
 def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool = True) -> float:
-    """Return the decimal digits that the motion costs.
+    """Return how many decimal digits are lost between inputs and results.
 
     For n digits of every result the inputs need n + this many.
 
@@ -77,7 +77,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
             relative = [changes[name] / size for name, size in pilot.sizes.items() if size]
             worst = max([worst, *relative])
         if worst <= _DIVERGED:
-            return _positive_log10(worst / nudge)
+            return _digits_lost_by(worst / nudge)
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(
         f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be "
@@ -86,11 +86,11 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
     )
 
 
-def _positive_log10(ratio: Fraction) -> float:
-    """Return the decimal logarithm of a number, or 0 for one below 1."""
-    if ratio <= 1:
+def _digits_lost_by(growth: Fraction) -> float:
+    """Return the decimal digits that are lost where relative errors grow by a factor, at least 0."""
+    if growth <= 1:
         return 0.0
-    return math.log10(ratio.numerator) - math.log10(ratio.denominator)
+    return math.log10(growth.numerator) - math.log10(growth.denominator)
 
 
 def _perturbed(inputs: Inputs, nudge: Fraction, *, release: bool) -> Inputs:
@@ -111,7 +111,7 @@ def _perturbed(inputs: Inputs, nudge: Fraction, *, release: bool) -> Inputs:
 class Sensitivity:
     """First-order response of a scene's trajectory to each of its inputs.
 
-    Args:
+    Attributes:
         scene: its inputs are varied.
         times: increasing, from 0, in s.
     """

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from decimal import MAX_EMAX, MAX_PREC, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from functools import cached_property
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from ..system.documents import MAX_JSON_BYTES, regular
 from ..system.imports import needed
 from .parquet import read_columns
 
-TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
+WORD_FIELDS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
 _FIXED = (
     "id",
     "title",
@@ -38,9 +38,9 @@ _FIXED = (
     "run.transits",
     "run.sections",
 )
-_MOST_ROWS = 10**8
-MOST_VALUES = 10**7  # of a field: they are held as text
-_MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
+_MAX_ROWS = 10**8
+MAX_VALUES = 10**7  # of a field: they are held as text
+_MAX_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
 _FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
 _PARQUET = (".parquet", ".pq")
 # thousands, or a decimal comma before three digits
@@ -62,10 +62,10 @@ class AxisTable:
     typed: dict[str, str] | None = None
 
     @classmethod
-    def of(
+    def restored(
         cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading
     ) -> AxisTable:
-        """Return the rows that were written down as `typed` and `stored`."""
+        """Return the table whose `typed` and `stored` were written down."""
         from_file = {key: tuple(texts) for key, texts in stored.items()}
         if typed is None:
             return cls(from_file)
@@ -102,7 +102,7 @@ class AxisTable:
         """Return the numbers of rows by field; only where nothing is wrong with them."""
         columns = {}
         for key, texts, places in self._placed(rows):
-            if key in TEXTS:
+            if key in WORD_FIELDS:
                 continue
             distinct, place_among_distinct = np.unique(places, return_inverse=True)
             numbers = _numbers([texts[place] for place in distinct], reading)
@@ -116,10 +116,10 @@ class AxisTable:
         return {
             key: [texts[place] for place in places]
             for key, texts, places in self._placed(rows)
-            if key in TEXTS
+            if key in WORD_FIELDS
         }
 
-    def wrong(self, rows: Iterable[int], reading: Reading) -> dict[int, str]:
+    def wrong(self, rows: Sequence[int], reading: Reading) -> dict[int, str]:
         """Return, by row of a list, why its first wrong value is wrong by itself.
 
         The values of `--over` words were checked when they were read.
@@ -184,8 +184,8 @@ def _check_key(option: str, key: str) -> None:
         raise unknown(option, key, "a field that a sweep can vary", names, advice)
 
 
-def grid(words: Iterable[str], reading: Reading) -> AxisTable:
-    """Read `--over` words, and check their values.
+def combinations(words: Iterable[str], reading: Reading) -> AxisTable:
+    """Return the table of all combinations of the values of `--over` words, which are checked.
 
     Raises:
         InputError: a wrong word, a field twice, or too many rows.
@@ -199,8 +199,8 @@ def grid(words: Iterable[str], reading: Reading) -> AxisTable:
         values[read.key] = read.values
         typed[read.key] = read.typed
     table = AxisTable(values, typed)
-    if table.count > _MOST_ROWS:
-        raise InputError("--over", f"{table.count} rows", f"at most {_MOST_ROWS:,} rows")
+    if table.count > _MAX_ROWS:
+        raise InputError("--over", f"{table.count} rows", f"at most {_MAX_ROWS:,} rows")
     return table
 
 
@@ -220,7 +220,7 @@ class Axis:
 
 
 def axis(word: str, reading: Reading) -> Axis:
-    """Read one `--over` word, KEY=…, and check its values.
+    """Return the field and the values of one `--over` word, KEY=…, which are checked.
 
     Raises:
         InputError: unknown field, or a wrong value: field, got, expected.
@@ -242,10 +242,18 @@ def axis(word: str, reading: Reading) -> Axis:
     seen = set()
     for text in values:
         checked_value(key, text, reading)
-        if text in seen:
-            raise InputError("--over", word, "each value once", f"{text} stands there twice.")
-        seen.add(text)
+        value = _distinguished(key, text, reading)
+        if value in seen:
+            raise InputError("--over", word, "each value once", f"{text} is there already.")
+        seen.add(value)
     return Axis(key, typed, values)
+
+
+def _distinguished(key: str, text: str, reading: Reading) -> str | float | Decimal:
+    """Return what tells a value of a field from another: a word, or the number that a scene takes."""
+    if key in WORD_FIELDS:
+        return text
+    return float(text) if reading == "binary64" else Decimal(text)
 
 
 def _range(key: str, word: str) -> tuple[str, ...]:
@@ -261,8 +269,8 @@ def _range(key: str, word: str) -> tuple[str, ...]:
     if step == 0 or (stop - start) / step < 0:
         raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
     count = (stop - start) // step + 1
-    if count > MOST_VALUES:
-        raise InputError("--over", f"{key}={word}", f"at most {MOST_VALUES:,} values")
+    if count > MAX_VALUES:
+        raise InputError("--over", f"{key}={word}", f"at most {MAX_VALUES:,} values")
     exponents = [int(Decimal(part).as_tuple().exponent) for part in parts]
     decimals = max(0, -min(exponents))
     first_scaled = int(start * 10**decimals)
@@ -283,8 +291,8 @@ def _exactly(key: str, text: str) -> Fraction:
     return Fraction(text)
 
 
-def listed(path: Path) -> AxisTable:
-    """Read a file of rows.
+def rows_of_file(path: Path) -> AxisTable:
+    """Return the table of the rows of a file, whose values are not checked.
 
     Raises:
         InputError: it cannot be read, has no rows, or a column is no field that can be varied.
@@ -308,7 +316,7 @@ def _columns_of_parquet(path: Path) -> list[tuple[str, tuple[str, ...]]]:
     needed("pyarrow", "sweep", "--rows", "reading Parquet")
     with (
         _readable("--rows", path),
-        regular(path, "--rows", _MOST_BYTES, "a Parquet file") as stream,
+        regular(path, "--rows", _MAX_BYTES, "a Parquet file") as stream,
     ):
         columns = read_columns(stream, _check_size)
     return [(full_name(key), tuple(map(_text, column))) for key, column in columns.items()]
@@ -318,8 +326,8 @@ def _check_size(names: Iterable[str], rows: int) -> None:
     """Refuse a file of rows by its columns, or their number."""
     for key in names:
         _check_key("--rows", key)
-    if rows > MOST_VALUES:
-        raise InputError("--rows", f"{rows} rows", f"at most {MOST_VALUES:,}")
+    if rows > MAX_VALUES:
+        raise InputError("--rows", f"{rows} rows", f"at most {MAX_VALUES:,}")
 
 
 def _text(value: Any) -> str:
@@ -335,29 +343,34 @@ def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]
     The separator is a semicolon or a tab if the first line has one, else a comma. A first column
     without a name is the index of a data frame, and is left out.
     """
-    with _readable(option, path), regular(path, option, _MOST_BYTES, "a CSV file") as stream:
-        text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
-        first = text.readline()
+    with _readable(option, path), regular(path, option, _MAX_BYTES, "a CSV file") as stream:
+        decoded = io.TextIOWrapper(stream, "utf-8-sig", newline="")
+        first = decoded.readline()
         separator = next((mark for mark in ";\t" if mark in first), ",")
-        rows = csv.reader(chain([first], text), delimiter=separator)
-        lines = list(islice((line for line in rows if any(line)), MOST_VALUES + 2))
-    if not 0 < len(lines) <= MOST_VALUES + 1:
-        raise InputError(option, str(path), f"a CSV file of 1 to {MOST_VALUES:,} rows")
+        rows = csv.reader(chain([first], decoded), delimiter=separator)
+        lines: list[list[str]] = []
+        for cells in filter(any, rows):
+            if lines and len(cells) != len(lines[0]):
+                got = f"{path}, line {rows.line_num}"
+                expected = f"{len(lines[0])} values as in the first"
+                raise InputError(option, got, expected, f"It has {len(cells)}.")
+            lines.append(cells)
+            if len(lines) > MAX_VALUES + 1:
+                break
+    if not 0 < len(lines) <= MAX_VALUES + 1:
+        raise InputError(option, str(path), f"a CSV file of 1 to {MAX_VALUES:,} rows")
+
     names, *below = lines
-    for number, line in enumerate(lines, 1):
-        if len(line) != len(names):
-            expected = f"{len(names)} values as in the first"
-            raise InputError(option, f"{path}, row {number}", expected, f"It has {len(line)}.")
 
     is_indexed = len(names) > 1 and not names[0].strip()
     columns = []
-    for place, name in enumerate(names):
-        if place == 0 and is_indexed:
+    for column, name in enumerate(names):
+        if column == 0 and is_indexed:
             continue
-        cells = [line[place] for line in below]
+        texts = [line[column] for line in below]
         if separator != ",":
-            cells = [_with_point(option, cell) for cell in cells]
-        columns.append((full_name(name), tuple(cell.strip() for cell in cells)))
+            texts = [_with_point(option, text) for text in texts]
+        columns.append((full_name(name), tuple(text.strip() for text in texts)))
     return columns
 
 

@@ -23,7 +23,7 @@ from ..engines.registry import batches
 from ..status import Status
 from ..system.channel import ACTIVITY
 from ..system.workers import Pool, WorkerDied, as_done
-from .estimate import MOVED, PASSAGES
+from .estimate import MOVED, SECTION_RUN
 from .part import Part, Promote, Tally, solve_part
 from .promote import Promoted, promoted
 from .request import Request, request_of
@@ -195,7 +195,7 @@ def prepared(request: Request) -> float:
     for options in (request.run_options, MOVED):
         engine.prepare(options)
     if request.sections:
-        engine.prepare(PASSAGES)
+        engine.prepare(SECTION_RUN)
     ACTIVITY.send("solving rows")
     return time.thread_time() - started
 

@@ -42,7 +42,7 @@ _GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
 _HEIGHT = _FACTOR * _LEAST_ULPS * _HALF_ULP  # what rounding may do to a height over the cord length
 MOVED = RunOptions(transits=False, apsides=False, moved=1)
 MOVED_BACK = RunOptions(transits=False, apsides=False, moved=-1)
-PASSAGES = RunOptions(apsides=False, times=True, form=True)
+SECTION_RUN = RunOptions(apsides=False, times=True, form=True)
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Errors:
 
 
 @dataclass(frozen=True)
-class Passages:
+class SectionPassages:
     """The zeros of a section's form in several rows, ordered by row and time.
 
     Attributes:
@@ -85,13 +85,13 @@ class Passages:
     t: Array
     direction: Any
 
-    def __getitem__(self, chosen: Any) -> Passages:
+    def __getitem__(self, chosen: Any) -> SectionPassages:
         """Return some of the passages."""
-        return Passages(self.row[chosen], self.t[chosen], self.direction[chosen])
+        return SectionPassages(self.row[chosen], self.t[chosen], self.direction[chosen])
 
 
-def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
-    """Return the errors of a run by one or two moved runs, and where a moved run stopped."""
+def errors_by_moved_runs(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
+    """Return the errors of a run, estimated by one or two moved runs, and where one of these stopped."""
     moved = engine.solve(rows, MOVED)
     estimated = errors(rows, run, moved)
     stopped = moved.fate == STOPPED
@@ -146,26 +146,28 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = _
         # an error of the phase shows in the position at the lowest point, and in the velocity at
         # the highest
         phase_gap = np.where(rate > 0, velocity_gap / rate, 0.0)
-        position = factor * np.fmax(position_gap, np.fmax(phase_gap, least_gap))
-        least_velocity_gap = np.fmax(rate * position / factor, _LEAST_ULPS * np.spacing(speed))
-        velocity = factor * np.fmax(velocity_gap, least_velocity_gap)
+        position_error = factor * np.fmax(position_gap, np.fmax(phase_gap, least_gap))
+        least_velocity_gap = np.fmax(
+            rate * position_error / factor, _LEAST_ULPS * np.spacing(speed)
+        )
+        velocity_error = factor * np.fmax(velocity_gap, least_velocity_gap)
 
-        transit, undecided = _of_zeros(rows, run, position, velocity)
+        transit, undecided = _errors_of_zeros(rows, run, position_error, velocity_error)
         span = run.t_last - run.t_first
         share = (run.transits - 1) * transit / span
-        swing, precession = errors_of_swing(rows, run, position, velocity)
+        swing, precession = errors_of_swing(rows, run, position_error, velocity_error)
     # a height rounds to about an ulp, which says little about an angle next to the top
     rounding = np.fmin(_HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * _HEIGHT))
     return Errors(
-        position=position,
-        velocity=velocity,
+        position=position_error,
+        velocity=velocity_error,
         transit=transit,
         frequency=np.where((run.transits > 1) & (share < LATE), share / span, np.nan),
         swing=swing,
         precession=precession,
-        angle=np.degrees(position / length + rounding),
+        angle=np.degrees(position_error / length + rounding),
         undecided=undecided,
-        unsure_of_highest=unsure_of_highest(rows, run, position, velocity),
+        unsure_of_highest=unsure_of_highest(rows, run, position_error, velocity_error),
     )
 
 
@@ -177,8 +179,12 @@ def _of_constants(rows: Rows) -> Array:
     return np.where(rate > 0, moved_m, 0.0)
 
 
-def _of_zeros(
-    rows: Rows, run: Outcomes, position: Array, velocity: Array, vertical: bool = False
+def _errors_of_zeros(
+    rows: Rows,
+    run: Outcomes,
+    position_error: Array,
+    velocity_error: Array,
+    vertical: bool = False,
 ) -> tuple[Array, Array]:
     """Return the error of the worst zero's time in s, and where the number of zeros is undecided.
 
@@ -187,34 +193,76 @@ def _of_zeros(
     Args:
         rows: the rows, with the form whose zeros the run has: that of xdot, or of a section.
         run: the results.
-        position: error of the position, in m.
-        velocity: error of the velocity, in m/s.
-        vertical: whether the form is the rate of the height. Of a velocity's error it sees the part
-            along the sphere, and an error of the position turns the velocity.
+        position_error: in m.
+        velocity_error: in m/s.
+        vertical: whether the form is the rate of the height.
     """
-    length = rows.length[:, 0]
-    place, motion = run.state[:, :3], run.state[:, 3:]
-    form = rows.form[..., 0]
-    a, b, d = form[:, :3], form[:, 3:6], form[:, 6]
-    value = (a * place).sum(axis=1) + (b * motion).sum(axis=1) - d * length
-
-    a_size = np.linalg.norm(a, axis=1)
-    b_size = np.linalg.norm(b, axis=1)
-    speed = np.linalg.norm(motion, axis=1)
-    fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
-    sine = np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
-    form_error = a_size * position + b_size * velocity
-    bend = fastest**2 * length * sine * (a_size + b_size * fastest)
-    bend = np.fmin(bend, bend_of_pairs(rows, run.largest_angle))
     if vertical:
-        passing = fastest_of(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
-        form_error = b_size * (sine * velocity + passing * position)
-        bend = 8 * sine * bend
+        form_error = _error_of_climbing(rows, run, position_error, velocity_error)
+    else:
+        form_error = _error_of_form(rows, position_error, velocity_error)
 
-    may_cross_the_end = np.abs(value) <= form_error
+    may_cross_the_end = np.abs(_form_at_end(rows, run)) <= form_error
+    bend = _bend_of_form(rows, run, vertical)
     may_not_exist = (run.close_pairs > 0) & (run.least_ax**2 < 4 * bend * form_error)
     undecided: Array = ~rows.still & (may_cross_the_end | may_not_exist)
     return form_error / run.least_ax + np.spacing(run.t_last), undecided
+
+
+def _form_at_end(rows: Rows, run: Outcomes) -> Array:
+    """Return the value of the rows' form at the end, in m/s for that of xdot."""
+    form = rows.form[..., 0]
+    of_position = (form[:, :3] * run.state[:, :3]).sum(axis=1)
+    of_velocity = (form[:, 3:6] * run.state[:, 3:]).sum(axis=1)
+    value: Array = of_position + of_velocity - form[:, 6] * rows.length[:, 0]
+    return value
+
+
+def _sizes_of_form(rows: Rows) -> tuple[Array, Array]:
+    """Return the norms of the form's coefficients of the position and of the velocity."""
+    form = rows.form[..., 0]
+    return np.linalg.norm(form[:, :3], axis=1), np.linalg.norm(form[:, 3:6], axis=1)
+
+
+def _error_of_form(rows: Rows, position_error: Array, velocity_error: Array) -> Array:
+    """Return the error of the form's value."""
+    position_size, velocity_size = _sizes_of_form(rows)
+    return position_size * position_error + velocity_size * velocity_error
+
+
+def _error_of_climbing(
+    rows: Rows, run: Outcomes, position_error: Array, velocity_error: Array
+) -> Array:
+    """Return the error of the form that is the rate of the height.
+
+    It contains only the part of the velocity's error along the sphere; but an error of the position
+    turns the velocity.
+    """
+    _, velocity_size = _sizes_of_form(rows)
+    turning_rate = fastest_of(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)
+    error: Array = velocity_size * (
+        _largest_sine(run) * velocity_error + turning_rate * position_error
+    )
+    return error
+
+
+def _bend_of_form(rows: Rows, run: Outcomes, vertical: bool) -> Array:
+    """Return a bound of the second derivative of the form between two close zeros."""
+    length = rows.length[:, 0]
+    position_size, velocity_size = _sizes_of_form(rows)
+    speed = np.linalg.norm(run.state[:, 3:], axis=1)
+    fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
+    sine = _largest_sine(run)
+    bend = fastest**2 * length * sine * (position_size + velocity_size * fastest)
+    bend = np.fmin(bend, bend_of_pairs(rows, run.largest_angle))
+    if vertical:
+        bend = 8 * sine * bend
+    return np.asarray(bend)
+
+
+def _largest_sine(run: Outcomes) -> Array:
+    """Return the largest sine of the angle that the bob has reached."""
+    return np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
 
 
 def bend_of_pairs(rows: Rows, angle: Array) -> Array:
@@ -247,16 +295,20 @@ def passages(
         run: the results of the same rows without it.
         errors: those of `run`.
     """
-    of_section = replace(engine.solve(rows, PASSAGES), largest_angle=run.largest_angle)
+    of_section = replace(engine.solve(rows, SECTION_RUN), largest_angle=run.largest_angle)
     vertical = direction_of(word) != 0
-    error, undecided = _of_zeros(rows, of_section, errors.position, errors.velocity, vertical)
-    zeros = Passages(of_section.transit_row, of_section.transit_t, of_section.transit_direction)
+    error, undecided = _errors_of_zeros(
+        rows, of_section, errors.position, errors.velocity, vertical
+    )
+    zeros = SectionPassages(
+        of_section.transit_row, of_section.transit_t, of_section.transit_direction
+    )
     columns, unknown = passages_listed(word, error, zeros)
     no_form = ~np.isfinite(rows.form).all(axis=(1, 2))
     return columns, (of_section.fate != OK) | no_form | undecided | unknown
 
 
-def passages_listed(word: str, error: Array, zeros: Passages) -> tuple[dict[str, Any], Any]:
+def passages_listed(word: str, error: Array, zeros: SectionPassages) -> tuple[dict[str, Any], Any]:
     """Return the columns of a section, and in which rows a number has no error.
 
     Args:

@@ -15,8 +15,8 @@ from ..engines.batch_interface import OK, STOPPED, Batch, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
-from .axes import TEXTS
-from .estimate import columns_of, judged, passages
+from .axes import WORD_FIELDS
+from .estimate import columns_of, errors_by_moved_runs, passages
 from .parquet import TRANSIT_COLUMNS
 from .promote import Promoted, promoted
 from .request import Request
@@ -95,7 +95,7 @@ class Part:
         """Fail a row with a wrong value, and keep those of its values that are numbers."""
         self.fail(place, Status.INVALID, reason)
         for key, text in texts.items():
-            if key not in TEXTS:
+            if key not in WORD_FIELDS:
                 with suppress(ValueError):
                     self.columns[key][place] = float(text)
 
@@ -239,7 +239,7 @@ def _by_engine(
     """Solve rows by one engine; return as `_side_by_side` does."""
     options = request.run_options
     run = engine.solve(rows, options)
-    errors, stopped = judged(engine, rows, run)
+    errors, stopped = errors_by_moved_runs(engine, rows, run)
     columns, unknown = columns_of(rows, run, errors)
     part.fill(places, {**columns, "status": Status.OK.value})
     part.columns["engine"][places] = engine.name

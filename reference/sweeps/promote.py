@@ -24,7 +24,7 @@ from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene
 from ..solver.solution import Solution
 from ..status import Status
-from .estimate import Errors, Passages, columns_of, passages_listed
+from .estimate import Errors, SectionPassages, columns_of, passages_listed
 from .highest_points import HIGHEST, SolvedPoints
 from .request import Request
 from .row_constants import engine_rows
@@ -180,7 +180,9 @@ def _columns_of_section(word: str, solution: Solution) -> dict[str, Any]:
     t = section.table["t"]
     bound = float(max(section.table.bound("t"), default=np.nan))
     error = bound + np.spacing(np.max(t, initial=0))
-    passages = Passages(row=np.zeros(len(t), int), t=t, direction=np.array(section.directions, int))
+    passages = SectionPassages(
+        row=np.zeros(len(t), int), t=t, direction=np.array(section.directions, int)
+    )
     columns, _ = passages_listed(word, np.array([error]), passages)
     return columns
 

@@ -28,7 +28,7 @@ from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Reading, Scene, checked_value, parse_scene
 from ..system.imports import needed
-from .axes import TEXTS, AxisTable, grid, listed
+from .axes import WORD_FIELDS, AxisTable, combinations, rows_of_file
 from .parquet import (
     AMPLITUDE,
     COLUMNS,
@@ -185,7 +185,7 @@ class Request:
         number, *described = COLUMNS
         varied = []
         for key in self.table.values:
-            kind = WORDS if key in TEXTS else "float64"
+            kind = WORDS if key in WORD_FIELDS else "float64"
             varied.append(Column(key, kind, f"{key} of the scene, the nearest double"))
         want = set(self.want)
         results = [column for column in described if not column.wants or want & set(column.wants)]
@@ -230,7 +230,7 @@ class Request:
     def of(cls, document: dict[str, Any]) -> Request:
         """Return the request that `document` wrote."""
         scene = parse_scene(document["scene"])
-        table = AxisTable.of(document["over"], document["values"], scene.inputs)
+        table = AxisTable.restored(document["over"], document["values"], scene.inputs)
         return cls(scene, table, **{name: document[name] for name in _STORED})
 
     @cached_property
@@ -276,7 +276,7 @@ def request(
         expected = "--over KEY=…, or --rows FILE"
         raise InputError("--over", got, expected, "Give one of the two.")
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
-    table = listed(rows) if rows else grid(words, scene.inputs)
+    table = rows_of_file(rows) if rows else combinations(words, scene.inputs)
     _check_release(scene, table.values)
     engine = _engine(settings.engine, scene, table.count)
     row_s = _PROMOTED_S if settings.promotes else _row_s(engine, scene)

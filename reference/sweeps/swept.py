@@ -15,7 +15,7 @@ from ..errors import counted, unknown
 from ..numbers.columns import Framed, data_frame
 from ..status import Status
 from ..system.imports import missing
-from .axes import TEXTS
+from .axes import WORD_FIELDS
 from .part import Part, Tally
 from .promote import Audit
 from .request import Request
@@ -114,7 +114,7 @@ class Swept(Framed):
         import xarray
 
         coords = {
-            key: list(texts) if key in TEXTS else np.array(texts, float)
+            key: list(texts) if key in WORD_FIELDS else np.array(texts, float)
             for key, texts in table.values.items()
         }
         return xarray.DataArray(values, coords=coords, dims=list(coords), name=name)

@@ -18,7 +18,7 @@ from .documents import regular
 SUMS = "SHA256SUMS"
 JOURNALS = "*.jsonl"
 _SEAL = "seal"
-_MOST_BYTES = 1 << 30  # of a file
+_MAX_BYTES = 1 << 30  # of a file
 _LINE = re.compile(r"([0-9a-f]{64})  ([^/]+)")
 _SEAL_HEX = 16  # hexadecimal digits of the seal of a line
 
@@ -48,7 +48,7 @@ def check_sums(folder: Path) -> list[str]:
         FileNotFoundError: there is no SHA256SUMS.
         InputError: it is no regular file.
     """
-    with regular(folder / SUMS, "PATH", _MOST_BYTES, SUMS) as stream:
+    with regular(folder / SUMS, "PATH", _MAX_BYTES, SUMS) as stream:
         lines = stream.read().decode(errors="replace").splitlines()
     problems = [] if lines else [f"{SUMS} is empty"]
     matches = [_LINE.fullmatch(line) for line in lines]
@@ -57,7 +57,7 @@ def check_sums(folder: Path) -> list[str]:
     for match in filter(None, matches):
         expected, name = match.groups()
         try:
-            with regular(folder / name, "PATH", _MOST_BYTES, "a file") as stream:
+            with regular(folder / name, "PATH", _MAX_BYTES, "a file") as stream:
                 found = sha256(stream.read()).hexdigest()
         except FileNotFoundError:
             problems.append(f"{name} is missing, which {SUMS} lists")
@@ -83,7 +83,7 @@ def verify_report(folder: Path) -> tuple[list[str], list[str]]:
 
 def _check_journal(path: Path) -> tuple[list[str], list[str]]:
     """Return what is wrong with a journal, and what cannot be decided."""
-    with regular(path, "PATH", _MOST_BYTES, "a journal") as stream:
+    with regular(path, "PATH", _MAX_BYTES, "a journal") as stream:
         lines = stream.read().splitlines()
     damaged = []
     cut_short = 0

@@ -5,8 +5,8 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from types import FrameType
 from typing import Any
 
@@ -15,26 +15,26 @@ _ENDS = (KeyboardInterrupt, SystemExit)
 _AGAIN_S = 0.25  # seconds after which the exception of a signal, which may be lost, is raised again
 
 
-@contextmanager
-def _replaced(
-    handler: Callable[..., object], chosen: Callable[[Any], bool]
-) -> Iterator[dict[int, Any]]:
-    """Replace the handlers for which `chosen` is true; yield these by their signals' numbers.
+def _handlers(chosen: Callable[[Any], bool]) -> dict[int, Any]:
+    """Return the handlers for which `chosen` is true, by the numbers of their signals.
 
-    Outside the main thread, which alone may change handlers, none is replaced.
+    Outside the main thread, which alone may change handlers, there are none.
     """
-    before: dict[int, Any] = {}
-    if threading.current_thread() is threading.main_thread():
-        for caught in (*SIGNALS, signal.SIGALRM):
-            usual = signal.getsignal(caught)
-            if chosen(usual):
-                before[caught] = usual
+    if threading.current_thread() is not threading.main_thread():
+        return {}
+    handlers = {number: signal.getsignal(number) for number in (*SIGNALS, signal.SIGALRM)}
+    return {number: handler for number, handler in handlers.items() if chosen(handler)}
+
+
+@contextmanager
+def _replaced(handlers: Mapping[int, Any], handler: Callable[..., object]) -> Iterator[None]:
+    """Replace handlers, given by the numbers of their signals, until the context is left."""
     try:
-        for number in before:
+        for number in handlers:
             signal.signal(number, handler)
-        yield before
+        yield
     finally:
-        for number, usual in before.items():
+        for number, usual in handlers.items():
             signal.signal(number, usual)
 
 
@@ -42,19 +42,25 @@ def _replaced(
 def held() -> Iterator[None]:
     """Hold signals back; processes and threads that start meanwhile begin with them blocked.
 
-    In the main thread the handlers wait as well, whichever thread a signal reaches: an exception
+    Signals received meanwhile are handled in the end, in their order, also after an exception. In
+    the main thread the handlers wait as well, whichever thread a signal reaches: an exception
     raised by one can leave a lock of Python's `threading` taken, and another thread would then wait
     for it forever.
     """
     received: list[int] = []
-    with _replaced(lambda number, _: received.append(number), callable) as handlers:
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-        try:
-            yield
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    for number in received[:1]:
-        handlers[number](number, None)
+    handlers = _handlers(callable)
+    try:
+        with _replaced(handlers, lambda number, _: received.append(number)):
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+            try:
+                yield
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    finally:
+        # a stack calls every handler, also after one that raises an exception
+        with ExitStack() as replay:
+            for number in reversed(received):
+                replay.callback(handlers[number], number, None)
 
 
 @contextmanager
@@ -66,22 +72,24 @@ def terminable() -> Iterator[list[int]]:
     Signals that already have a handler, or that are ignored (nohup), are left alone; outside the
     main thread all are. The exception of a signal can be lost: Python ignores it in a finaliser,
     and code in C drops one that it meets while it looks for an attribute. Hence an alarm raises it
-    again every `_AGAIN_S` until the context is left. While the exception is handled, neither the
-    alarm nor a further signal has an effect.
+    again every `_AGAIN_S` until the context is left; then an alarm that was set before is set
+    again. While the exception is handled, neither the alarm nor a further signal has an effect.
 
     Yields:
         The numbers of the signals received, then those of alarms. The exception that arrives is not
         always the one raised here: code in C that is interrupted during its import raises an
-            ImportError instead.
+        ImportError instead.
     """
     received: list[int] = []
+    replaced_alarms: list[tuple[float, float]] = []
 
     def stop(number: int, _: FrameType | None) -> None:
         received.append(number)
         if _ends(sys.exc_info()[1]):  # unfinished work is being cleared away
             return
         if signal.getsignal(signal.SIGALRM) is stop:
-            signal.setitimer(signal.ITIMER_REAL, _AGAIN_S, _AGAIN_S)
+            alarm = signal.setitimer(signal.ITIMER_REAL, _AGAIN_S, _AGAIN_S)
+            replaced_alarms.append(alarm)
         first = received[0]
         if first == signal.SIGINT:
             raise KeyboardInterrupt
@@ -93,13 +101,14 @@ def terminable() -> Iterator[list[int]]:
         if not (received and _ends(lost.exc_value)):
             usual_hook(lost)
 
-    sys.unraisablehook = hook
-    with _replaced(stop, (signal.SIG_DFL, signal.default_int_handler).__contains__):
+    usual_handlers = _handlers((signal.SIG_DFL, signal.default_int_handler).__contains__)
+    with _replaced(usual_handlers, stop):
         try:
+            sys.unraisablehook = hook
             yield received
         finally:
-            if received:
-                signal.setitimer(signal.ITIMER_REAL, 0)
+            if replaced_alarms:
+                signal.setitimer(signal.ITIMER_REAL, *replaced_alarms[0])
             sys.unraisablehook = usual_hook
 
 

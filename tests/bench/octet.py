@@ -26,7 +26,7 @@ from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.double_double import DoubleDouble
 from reference.scenes.scene import load_scene
-from reference.sweeps.estimate import MOVED, errors, judged
+from reference.sweeps.estimate import MOVED, errors, errors_by_moved_runs
 from reference.sweeps.part import solve_part
 from reference.sweeps.request import Settings, request
 from reference.sweeps.row_constants import columns_of, row_constants
@@ -124,7 +124,7 @@ def main(count: int = 181, pairs: int = 5) -> None:
         return lambda: HEYOKA.solve(rows, options)
 
     def default(engine: Any) -> Callable[[], object]:
-        return lambda: judged(engine, rows, engine.solve(rows, whole))
+        return lambda: errors_by_moved_runs(engine, rows, engine.solve(rows, whole))
 
     for options in (bare, transits, whole, MOVED):
         HEYOKA.solve(rows[:8], options)

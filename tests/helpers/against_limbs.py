@@ -13,7 +13,7 @@ from reference.engines.batch_interface import OK, Batch, Outcomes, Rows, RunOpti
 from reference.engines.registry import engines
 from reference.model.algebra import add, cross, dot, scale, subtract
 from reference.scenes.inputs import Inputs
-from reference.sweeps.estimate import Errors, judged
+from reference.sweeps.estimate import Errors, errors_by_moved_runs
 from reference.sweeps.highest_points import DEGREES_PER_HOUR
 
 BITS = 110
@@ -57,7 +57,7 @@ def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Compari
     """Solve scenes in a batch engine and in limbs, and compare."""
     rows = rows_of(many)
     run = batch.solve(rows, RunOptions(times=True))
-    estimate = judged(batch, rows, run)[0] if estimates else None
+    estimate = errors_by_moved_runs(batch, rows, run)[0] if estimates else None
     found = Comparison(rows=len(many))
     for i, inputs in enumerate(many):
         if run.fate[i] != OK:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from reference.dataset.files import Files, read_files
+from reference.dataset.files import DatasetFiles, read_files
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.record import invariant_drift
 from reference.dataset.render import derived_texts
@@ -108,7 +108,7 @@ def moved(text: str, by: Fraction) -> str:
     return fixed_decimal(Fraction(text) + (by if abs(by) > abs(unit) else unit), places)
 
 
-def bound_of(files: Files, kind: str, column: str, row: int) -> Fraction:
+def bound_of(files: DatasetFiles, kind: str, column: str, row: int) -> Fraction:
     """Return the bound on a printed number."""
     if column == "t":
         return (

@@ -70,7 +70,11 @@ def _group(entry: Entry) -> str:
 
 
 def scene_page(
-    entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any] | None, beside: str | None
+    entry: Entry,
+    svgs: Sequence[str],
+    base: str,
+    function: dict[str, Any] | None,
+    beside: str | None,
 ) -> str:
     """Return the page of a scene, which holds its golden rows and judges a file by them.
 
@@ -78,11 +82,11 @@ def scene_page(
         entry: the scene.
         svgs: its pictures.
         base: where the datasets' folders stand, as a URL or a path; empty for no links to files.
-        made: the golden function, None if it has none.
+        function: the golden function, None if it has none.
         beside: the file beside the page that holds the function; None if the page itself does.
     """
     motion = [parts.pictures(svgs)]
-    if made:
+    if function:
         motion.insert(0, Html(source("player.html")))
     first, *further = entry.datasets
     datasets = [parts.dataset(first, base)]
@@ -91,7 +95,7 @@ def scene_page(
         datasets.append(Html(f"{heading}\n{parts.dataset(golden, base)}"))
     sections = [
         section("The motion", *motion),
-        section("Judge your program", _drop(entry, made, beside)),
+        section("Judge your program", _drop(entry, function, beside)),
         section("The state at the end", parts.state(entry.golden)),
         section("The dataset", *datasets),
     ]
@@ -102,14 +106,14 @@ def scene_page(
     units = paragraph("SI units, angles in degrees.")
     sections.append(section("Inputs", units, parts.inputs(entry.golden)))
 
-    embedded = parts.embedded(entry.judged, None if beside else made, beside)
+    page_data = parts.page_data(entry.judged, None if beside else function, beside)
     judging = _script("function.mjs", "reading.js", "judging.js", "answering.js", kind="judging")
     drawing = _script("drawing.js", "dropping.js", "playing.js")
     return page(
         entry.id,
         sections,
         lead=_lead(entry),
-        script=Html(_data(embedded) + judging + drawing),
+        script=Html(_data(page_data) + judging + drawing),
         styles=source("atlas.css"),
     )
 
@@ -134,8 +138,8 @@ def _card(entry: Entry, thumb: str) -> str:
 
 def _filters(scenes: Sequence[Entry]) -> Html:
     flags = sorted({flag for entry in scenes for flag in entry.flags})
-    made = {golden.manifest.level for entry in scenes for golden in entry.datasets}
-    levels = [level for level in LEVELS if level in made]
+    present = {golden.manifest.level for entry in scenes for golden in entry.datasets}
+    levels = [level for level in LEVELS if level in present]
     return Html(
         f'<form class="filters" hidden>\n{_choice("flag", flags)}\n{_choice("level", levels)}\n'
         '<output id="count"></output>\n</form>'
@@ -151,7 +155,7 @@ def _choice(name: str, words: Iterable[str]) -> str:
     )
 
 
-def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html:
+def _drop(entry: Entry, function: dict[str, Any] | None, beside: str | None) -> Html:
     golden = entry.judged
     times = ", ".join(f"{t:.15g}" for t in golden.t[:3])
     transits = ""
@@ -159,14 +163,14 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
         transits = " A second file with the times of xdot = 0 in a column t has your transits judged as well."
     rows = f"a row for {times} … s, or for some of them"
     known = "the golden rows alone: the dataset has no golden function"
-    if made:
+    if function:
         rows = f"rows at any times up to {golden.t[-1]:.15g} s"
         bounds = ", ".join(
-            f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z")
+            f"{name} within {function['record']['bounds'][name]} m" for name in ("x", "y", "z")
         )
         known = f"the golden function, which has {bounds} of the truth at every time (proven)"
-    if made and beside:
-        size = f"{len(made['coefficients']) / 1e6:.1f} MB"
+    if function and beside:
+        size = f"{len(function['coefficients']) / 1e6:.1f} MB"
         known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"
     words = {"rows": rows, "transits": transits, "known": known, "command": entry.score_command()}
     return Html(
@@ -228,13 +232,13 @@ def build(
     for count, entry in enumerate(scenes):
         report(count, len(scenes), entry.id)
         motion = PicturedMotion.of_golden(entry.golden)
-        made = parts.function_made(entry.judged)
+        function = parts.golden_function(entry.judged)
         beside = None
-        if made and len(made["coefficients"]) > MOST_EMBEDDED:
+        if function and len(function["coefficients"]) > MOST_EMBEDDED:
             beside = f"{entry.id}.function.js"
-            numbers = json.dumps(made, separators=(",", ":"))
+            numbers = json.dumps(function, separators=(",", ":"))
             pages[beside] = f"globalThis.goldenFunction = {numbers};\n"
-        pages[f"{entry.id}.html"] = scene_page(entry, motion_svgs(motion), base, made, beside)
+        pages[f"{entry.id}.html"] = scene_page(entry, motion_svgs(motion), base, function, beside)
         thumbs.append(thumbnail(motion))
     pages[PAGE] = index_page(scenes, thumbs)
     write_files(out, pages)

@@ -1,4 +1,4 @@
-"""Parts of the pages of the atlas: flags, pictures, certified state, trust, files, inputs, how methods fare.
+"""Parts of the pages of the atlas: flags, pictures, certified state, certificate, files, inputs, how methods fare.
 
 Besides: the numbers and words by which the script of a page judges a file in the browser.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -23,6 +24,7 @@ from reference.status import Status
 
 from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
+from ...candidates.candidate import Deviation
 from ...diagnosis import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from ...score.clock_start import SUBTRACT, TOLERANCE
 from ...score.errors import swing_rate
@@ -36,6 +38,7 @@ from .entry import Entry, StudyResults, run_name
 
 # of the proof's THEOREM.md
 THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}
+_IMPORTED = {"IO", "UTC"}  # names in capitals that the modules of the vocabulary import
 
 
 def pictures(svgs: Sequence[str]) -> Html:
@@ -67,7 +70,7 @@ def state(golden: Golden) -> Html:
     return PageTable({"": "", heading: "value", "in": "", "within": "number"}, rows).html()
 
 
-def trust(golden: Golden) -> Mapping[str, str]:
+def certificate(golden: Golden) -> Mapping[str, str]:
     """Return bound, level, what stands behind it, and the transits, by name."""
     manifest, bounds = golden.manifest, golden.manifest.bounds
     behind = [MEANING[manifest.level]]
@@ -98,13 +101,13 @@ def trust(golden: Golden) -> Mapping[str, str]:
 
 
 def dataset(golden: Golden, base: str) -> Html:
-    """Return all that is to be said of a dataset: trust, and its files with sizes and hashes."""
+    """Return all that is to be said of a dataset: its certificate, and its files with sizes and hashes."""
     rows = [
         (linked(golden, name, base), f"{record.bytes:,}", record.sha256)
         for name, record in golden.manifest.files.items()
     ]
     files = PageTable({"file": "", "bytes": "number", "sha256": "digest"}, rows)
-    return Html(f"{facts(trust(golden))}\n{files.html()}")
+    return Html(f"{facts(certificate(golden))}\n{files.html()}")
 
 
 def linked(golden: Golden, name: str, base: str) -> Html:
@@ -142,25 +145,27 @@ def _same_digits(cells: Mapping[str, Cell]) -> Html:
         return -1.0 if kept is None else kept
 
     rows = []
-    kinds = []
+    row_classes = []
     for name in sorted(cells, key=digits, reverse=True):
         cell = cells[name]
         numbers = (_tenths(cell.asked), _tenths(cell.digits), _cpu(cell.cpu_s))
         rows.append((name, cell.status.words, *numbers))
-        kinds.append("" if cell.status is Status.OK else "failed")
+        row_classes.append("" if cell.status is Status.OK else "failed")
     caption = "Runs that were asked for the same digits (docs/studies.md)"
-    return PageTable(columns, rows, kinds).html(caption)
+    return PageTable(columns, rows, row_classes).html(caption)
 
 
 def _tenths(digits: float | None) -> str:
+    """Return digits with one decimal, at least 0; empty for None."""
     return "" if digits is None else f"{max(digits, 0.0):.1f}"
 
 
 def _cpu(seconds: float | None) -> str:
+    """Return CPU seconds with two significant digits; empty for None."""
     return "" if seconds is None else f"{seconds:.2g}"
 
 
-def function_made(golden: Golden) -> dict[str, Any] | None:
+def golden_function(golden: Golden) -> dict[str, Any] | None:
     """Return what `evaluator` in docs/readers/function.mjs needs of the golden function; None if there is none."""
     if golden.function is None:
         return None
@@ -172,13 +177,13 @@ def function_made(golden: Golden) -> dict[str, Any] | None:
     }
 
 
-def embedded(
-    golden: Golden, made: dict[str, Any] | None = None, beside: str | None = None
+def page_data(
+    golden: Golden, function: dict[str, Any] | None = None, beside: str | None = None
 ) -> dict[str, Any]:
     """Return what `judging.js` needs of a dataset: grid and transits in base64, bounds, vocabulary.
 
     Each transit has a weight |ax|/ω in m/s, which turns an error of time into one of position. The
-    golden function is `made`, or in a file `beside` the page.
+    golden function is `function`, or in a file `beside` the page.
     """
     inputs = golden.scene.exact
     length = float(inputs.length)
@@ -200,7 +205,7 @@ def embedded(
         "transits": None if reason else {"t": _doubles(transits["t"]), "weight": _doubles(weight)},
         "no_transits": reason,
         "possible": [[float(span.from_s), float(span.to_s)] for span in golden.manifest.possible],
-        "function": made,
+        "function": function,
         "beside": beside,
         "words": vocabulary(),
     }
@@ -211,7 +216,7 @@ def vocabulary() -> dict[str, Any]:
     tables: dict[str, Any] = {}
     for module in (names, text_reader, header, clock, read, candidate):
         for name, value in vars(module).items():
-            if name.isupper() and not name.startswith("_"):
+            if name.isupper() and not name.startswith("_") and name not in _IMPORTED:
                 tables[name] = value
     sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID}
     limits = {
@@ -227,13 +232,22 @@ def vocabulary() -> dict[str, Any]:
 
 
 def plain(value: object) -> Any:
-    """Return a set, pattern, fraction or deviation as `json.dumps` can write it."""
+    """Return a set, pattern, fraction or deviation as `json.dumps` can write it.
+
+    Raises:
+        TypeError: it is none of these.
+    """
     if isinstance(value, Fraction):
         return [value.numerator, value.denominator]
-    if isinstance(value, set):
+    if isinstance(value, set | frozenset):
         return sorted(value)
-    return getattr(value, "pattern", None) or getattr(value, "text", None)
+    if isinstance(value, re.Pattern):
+        return value.pattern
+    if isinstance(value, Deviation):
+        return value.text
+    raise TypeError(f"{value!r} has no form in JSON")
 
 
 def _doubles(values: Array) -> str:
+    """Return doubles, least significant byte first, in base64."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()

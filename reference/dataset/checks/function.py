@@ -11,7 +11,7 @@ from ...numbers.columns import STATE
 from ...numbers.function import GoldenFunction
 from ...numbers.precision import double_below
 from ...numbers.table import Table
-from ..files import Files
+from ..files import DatasetFiles
 from ..function import FunctionRecord
 from ..manifest import FUNCTION, differences
 
@@ -19,7 +19,7 @@ from ..manifest import FUNCTION, differences
 _RANDOM_TIMES = 2
 
 
-def problems(files: Files) -> Iterator[str]:
+def problems(files: DatasetFiles) -> Iterator[str]:
     """Yield what does not follow from manifest and scene, or contradicts a row of the grid."""
     if files.function is None:
         return
@@ -37,7 +37,7 @@ def problems(files: Files) -> Iterator[str]:
         yield from _far_from_grid(files, function)
 
 
-def _far_from_grid(files: Files, function: GoldenFunction) -> Iterator[str]:
+def _far_from_grid(files: DatasetFiles, function: GoldenFunction) -> Iterator[str]:
     """Yield each number of the grid, at a time that is a double, that the function contradicts."""
     rows = [
         row for row in files.tables["grid.csv"].rows if Fraction(float(row[0])) == Fraction(row[0])
@@ -53,7 +53,7 @@ def _far_from_grid(files: Files, function: GoldenFunction) -> Iterator[str]:
             yield f"{FUNCTION[0]}: t = {rows[k][0]}: {off}"
 
 
-def moments(files: Files) -> list[float]:
+def moments(files: DatasetFiles) -> list[float]:
     """Return times at which the function is compared with the motion.
 
     In every piece these are both ends and random ones.
@@ -69,7 +69,7 @@ def moments(files: Files) -> list[float]:
 
 
 def contradicted(
-    files: Files, times: list[float], table: Table, distance: Mapping[str, Fraction]
+    files: DatasetFiles, times: list[float], table: Table, distance: Mapping[str, Fraction]
 ) -> list[str]:
     """Return a sentence for every value of the function that a run contradicts.
 

@@ -25,7 +25,7 @@ from ...numbers.columns import GRID, SECTION, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ...numbers.zeros import Zeros, sections_of
-from ..files import Files
+from ..files import DatasetFiles
 from ..manifest import MANIFEST, Kind, Manifest, Possible
 from ..sheets import Sheet
 from . import function
@@ -63,7 +63,7 @@ class _Comparison:
     fine: Table
 
 
-def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
+def problems(files: DatasetFiles, report: Progress | None = None) -> tuple[list[str], list[str]]:
     """Return a sentence for every number that the motion contradicts, and what was not decided."""
     if not engines()["limbs"].installed:
         return [], _undecided(
@@ -107,7 +107,7 @@ def _first_prec(manifest: Manifest) -> int:
     return min(prec, MOST_PREC)
 
 
-def _steps(files: Files) -> int:
+def _steps(files: DatasetFiles) -> int:
     """Estimate the steps of a run: the fastest rate in the scene, times the span."""
     start = Start.of(files.scene.exact, GUARD_BITS)
     k = start.k
@@ -117,7 +117,7 @@ def _steps(files: Files) -> int:
     return int(min(_MOST_STEPS, t_end * (rate + speed_over_length)))
 
 
-def _largest_speed(files: Files) -> Fraction:
+def _largest_speed(files: DatasetFiles) -> Fraction:
     """Return |vx| + |vy| + |vz| where it is largest, in the grid or at moments of the function."""
     if files.manifest.alone:
         _, golden_function = files.function  # type: ignore[misc]
@@ -128,7 +128,7 @@ def _largest_speed(files: Files) -> Fraction:
     return max(sum(map(abs, row), Fraction(0)) for row in rows)
 
 
-def _run(files: Files, prec: int, report: Progress | None) -> Run:
+def _run(files: DatasetFiles, prec: int, report: Progress | None) -> Run:
     """Return a run through the grid and the moments at which the function is compared."""
     inputs = files.scene.exact
     times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
@@ -138,14 +138,14 @@ def _run(files: Files, prec: int, report: Progress | None) -> Run:
     return run(plan, lambda t: report(t, float(inputs.t_end)))
 
 
-def _decided_words(files: Files) -> tuple[str, ...]:
+def _decided_words(files: DatasetFiles) -> tuple[str, ...]:
     """Return the zeros to look for: all but sections with intervals that the proof left open."""
     sections = files.manifest.sections
     possible = sections.possible if sections else {}
     return tuple(word for word in files.scene.run.zeros if not possible.get(word))
 
 
-def _differing(files: Files, coarse: Run, fine: Run) -> list[str] | None:
+def _differing(files: DatasetFiles, coarse: Run, fine: Run) -> list[str] | None:
     """Return a sentence for each number that is off; None if the two runs cannot decide."""
     if any(coarse.zeros[word].directions != zeros.directions for word, zeros in fine.zeros.items()):
         return None
@@ -173,7 +173,7 @@ def _off_in_tables(manifest: Manifest, comparisons: Iterable[_Comparison]) -> li
     return sentences
 
 
-def _off_in_function(files: Files, coarse: Run, fine: Run) -> list[str]:
+def _off_in_function(files: DatasetFiles, coarse: Run, fine: Run) -> list[str]:
     """Return a sentence for each value of the golden function that is off."""
     moments = function.moments(files)
     times = [Fraction(t) for t in moments]
@@ -182,14 +182,14 @@ def _off_in_function(files: Files, coarse: Run, fine: Run) -> list[str]:
     return function.contradicted(files, moments, table, distance)
 
 
-def _grid(files: Files, coarse: Run, fine: Run) -> _Comparison:
+def _grid(files: DatasetFiles, coarse: Run, fine: Run) -> _Comparison:
     """Return the states of the grid, to be compared."""
     times = files.scene.exact.grid
     sheet = files.tables.get("grid.csv")
     return _Comparison("grid", sheet, _at(times, coarse), _at(times, fine))
 
 
-def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], list[_Comparison]]:
+def _transits(files: DatasetFiles, coarse: Run, fine: Run) -> tuple[list[str], list[_Comparison]]:
     """Check possible intervals and the number of transits; return problems, and what to compare."""
     if coarse.transits is None or fine.transits is None:
         return [], []
@@ -211,7 +211,7 @@ def _transits(files: Files, coarse: Run, fine: Run) -> tuple[list[str], list[_Co
     return sentences, [_Comparison("transits", sheet, rough, _rows(fine.transits, outside))]
 
 
-def _sections(files: Files, coarse: Run, fine: Run) -> tuple[list[str], list[_Comparison]]:
+def _sections(files: DatasetFiles, coarse: Run, fine: Run) -> tuple[list[str], list[_Comparison]]:
     """Check the number of passages in decided sections; return problems, and what to compare."""
     sheet = files.tables.get("sections.csv")
     if sheet is None:
@@ -251,7 +251,9 @@ def _at(times: Iterable[Fraction], run: Run) -> Table:
     return Table(GRID, run.grid.bits, [values[row[t]] for t in times])
 
 
-def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int], list[str]]:
+def _outside_intervals(
+    files: DatasetFiles, plan: Plan, zeros: Table
+) -> tuple[list[int], list[str]]:
     """Return which zeros of xdot lie in no possible interval, and a sentence for each refuted one.
 
     By Taylor's theorem xdot at a zero, or in the middle of an interval, bounds it elsewhere in the
@@ -325,7 +327,9 @@ def _middles(plan: Plan, intervals: Iterable[Possible]) -> Table:
     return engines()["limbs"].run(replace(plan, times=times, zeros=())).grid
 
 
-def _ends_the_run(files: Files, low: Fraction, high: Fraction, slopes: list[Fraction]) -> bool:
+def _ends_the_run(
+    files: DatasetFiles, low: Fraction, high: Fraction, slopes: list[Fraction]
+) -> bool:
     """Return whether an interval ends with the run and is so short that a proof cannot decide.
 
     The proof then cannot tell if a zero lies before or after the end.
@@ -357,7 +361,7 @@ def _off(
         table: its rows by the run.
         distance: the largest distance of the two runs, by column.
     """
-    printed, scale = sheet.integers(table.columns)
+    printed, scale = sheet.scaled_integers(table.columns)
     unit = scale << table.bits
     sentences = []
     for i, name in enumerate(table.columns):

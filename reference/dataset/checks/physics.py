@@ -19,7 +19,7 @@ from ...model.force import acceleration, energy, invariant
 from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
 from ...numbers.table import FixedPoint, Integers, integers
-from ..files import Files
+from ..files import DatasetFiles
 from ..manifest import Kind
 from ..record import INVARIANT_BITS
 from ..sheets import Sheet
@@ -42,7 +42,7 @@ _ROW_WORDS: dict[Kind, tuple[str, int]] = {
 }
 
 
-def problems(files: Files) -> Iterator[str]:
+def problems(files: DatasetFiles) -> Iterator[str]:
     """Yield every row that breaks a law which holds at each moment."""
     kinds: tuple[Kind, ...] = ("grid", "sections", "transits")
     tables = []
@@ -61,13 +61,13 @@ def problems(files: Files) -> Iterator[str]:
             yield from moments.with_another_acceleration(moments.transits)
 
 
-def _moments(files: Files, kind: Kind, sheet: Sheet) -> _Moments:
+def _moments(files: DatasetFiles, kind: Kind, sheet: Sheet) -> _Moments:
     """Return the states of a table, over a unit that holds the bounds and the length as well.
 
     At a transit the velocity is (0, vy, -y vy / z).
     """
     printed = ("x", "y", "z", "vy") if kind == "transits" else STATE
-    columns, unit = sheet.integers(printed)
+    columns, unit = sheet.scaled_integers(printed)
     bounds = [files.manifest.bound(kind, name) for name in printed]
     if kind == "transits":
         # xdot is zero by definition, and zdot follows
@@ -105,7 +105,7 @@ class _Moments:
         transits: the printed table if these are transits, where vz is not given but follows.
     """
 
-    files: Files
+    files: DatasetFiles
     names: list[str]
     columns: list[Integers]
     unit: int
@@ -155,7 +155,7 @@ class _Moments:
 
     def with_another_acceleration(self, transits: Sheet) -> Iterator[str]:
         """Check xddot, as the table of transits prints it."""
-        (printed,), unit = transits.integers(("ax",))
+        (printed,), unit = transits.scaled_integers(("ax",))
         bound = self.files.manifest.bound("transits", "ax")
         values = self.values(_xddot)
         rows = zip(self.names, values, self.allowed(_xddot), printed, self._known, strict=True)

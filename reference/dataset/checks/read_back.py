@@ -15,7 +15,7 @@ from typing import Any
 from ...errors import LONGEST_VALUE
 from ...numbers.columns import GRID, TRANSITS
 from ...plain_text import shortened
-from ..files import Files
+from ..files import DatasetFiles
 from ..manifest import Manifest, differences
 from ..render import CONFIRMED, MEANING
 from ..sheets import Sheet
@@ -39,7 +39,7 @@ _UNITS = {
 _SAME = ("schema_version", "id", "level", "digits", "inputs", "frame", "scene")
 
 
-def problems(files: Files) -> Iterator[str]:
+def problems(files: DatasetFiles) -> Iterator[str]:
     """Yield what vectors and page say that tables and manifest do not."""
     if _VECTORS in files.texts:
         try:
@@ -50,7 +50,7 @@ def problems(files: Files) -> Iterator[str]:
         yield from _page(files, files.texts[_PAGE].split("\n"))
 
 
-def _vectors(files: Files, document: dict[str, Any]) -> Iterator[str]:
+def _vectors(files: DatasetFiles, document: dict[str, Any]) -> Iterator[str]:
     """Compare every field of vectors.json with what it should be."""
     manifest = files.manifest.model_dump()
     notes = document["notes"]
@@ -70,7 +70,7 @@ def _vectors(files: Files, document: dict[str, Any]) -> Iterator[str]:
         yield f"{_VECTORS}: its notes are not those of the flags that it uses"
 
 
-def _states(files: Files) -> Iterator[dict[str, Any]]:
+def _states(files: DatasetFiles) -> Iterator[dict[str, Any]]:
     """Yield the state of each row that the vectors should have."""
     columns = ("t", *GRID)
     bounds = {"t": "0", **files.manifest.bounds.grid}
@@ -85,7 +85,7 @@ def _states(files: Files) -> Iterator[dict[str, Any]]:
         yield {"row": row, "flags": flags, "values": values}
 
 
-def _transits(files: Files) -> Iterator[dict[str, Any]]:
+def _transits(files: DatasetFiles) -> Iterator[dict[str, Any]]:
     """Yield each transit that the vectors should have; the bound on its time is its own."""
     table = files.tables.get("transits.csv", Sheet((), [], {}))
     last = len(table.rows)
@@ -119,7 +119,7 @@ def _evenly(count: int, most: int) -> list[int]:
 
 
 def _values(
-    files: Files, kind: str, row: int, names: tuple[str, ...], bounds: Mapping[str, str]
+    files: DatasetFiles, kind: str, row: int, names: tuple[str, ...], bounds: Mapping[str, str]
 ) -> dict[str, dict[str, str]]:
     """Return the numbers of a row of a table, their doubles and their bounds."""
     table = files.tables[f"{kind}.csv"]
@@ -136,7 +136,7 @@ def _values(
     }
 
 
-def _page(files: Files, lines: list[str]) -> Iterator[str]:
+def _page(files: DatasetFiles, lines: list[str]) -> Iterator[str]:
     """Check the page's sentences on level, reading, confirmation and passages.
 
     Its numbers are compared elsewhere.

@@ -14,7 +14,7 @@ from ...numbers.columns import GRID, STATE
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...plain_text import shortened
 from ...solver.solution import exact_decimals
-from ..files import Files
+from ..files import DatasetFiles
 from ..making import ENGINE, Making, command, options_in
 from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Kind, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
@@ -30,7 +30,7 @@ _BOUNDED = ("position_m", "velocity_m_s", "transit_s")  # what a run or a proof 
 _HALF = Fraction(1, 2)
 
 
-def table_problems(files: Files) -> Iterator[str]:
+def table_problems(files: DatasetFiles) -> Iterator[str]:
     """Yield what is wrong with the rows of the tables, by themselves and against the scene."""
     yield from _times(files)
     yield from _release(files)
@@ -42,7 +42,7 @@ def table_problems(files: Files) -> Iterator[str]:
         yield from _bound_column(files, files.tables["transits.csv"])
 
 
-def _times(files: Files) -> Iterator[str]:
+def _times(files: DatasetFiles) -> Iterator[str]:
     """Check that the grid has the scene's times, exactly."""
     times = files.scene.exact.grid
     if [Fraction(row[0]) for row in files.tables["grid.csv"].rows] != times:
@@ -51,7 +51,7 @@ def _times(files: Files) -> Iterator[str]:
         yield f"{MANIFEST}: decimals of the grid's t do not follow from the scene"
 
 
-def _release(files: Files) -> Iterator[str]:
+def _release(files: DatasetFiles) -> Iterator[str]:
     """Check that the first row is the scene's exact release."""
     start = Start.of(files.scene.exact, bits_of(2 * files.manifest.digits) + GUARD_BITS)
     released = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
@@ -61,7 +61,7 @@ def _release(files: Files) -> Iterator[str]:
             yield f"grid.csv: {name} of the first row is not that of the scene's release"
 
 
-def _digits(files: Files) -> Iterator[str]:
+def _digits(files: DatasetFiles) -> Iterator[str]:
     """Check that the largest number of each column of the grid has the digits asked for."""
     sheet = files.tables["grid.csv"]
     manifest = files.manifest
@@ -73,7 +73,7 @@ def _digits(files: Files) -> Iterator[str]:
             yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
 
 
-def _doubles(files: Files, kind: Kind) -> Iterator[str]:
+def _doubles(files: DatasetFiles, kind: Kind) -> Iterator[str]:
     """Check that each double is the nearest to some number within the bound of the decimal."""
     plain = files.tables.get(f"{kind}.csv")
     doubles = files.tables.get(f"{kind}.binary64.csv")
@@ -99,7 +99,7 @@ def _doubles(files: Files, kind: Kind) -> Iterator[str]:
             yield f"{name_of_file}: row {row[0]} has another direction, number or bound than {kind}.csv"
 
 
-def _bounds_by_row(files: Files, kind: Kind, name: str, sheet: Sheet) -> list[Fraction]:
+def _bounds_by_row(files: DatasetFiles, kind: Kind, name: str, sheet: Sheet) -> list[Fraction]:
     """Return the bound on a column's number in each row.
 
     Times of the grid are exact; the time of a transit has a bound of its own.
@@ -115,7 +115,7 @@ def _may_be_nearest(double: float, value: Fraction, bound: Fraction) -> bool:
     return float(value - bound) <= double <= float(value + bound)
 
 
-def _order(files: Files, transits: Sheet) -> Iterator[str]:
+def _order(files: DatasetFiles, transits: Sheet) -> Iterator[str]:
     """Check that transits count from 1, lie in (0, t_end] in order, and alternate.
 
     The signs of vx on the grid must agree.
@@ -137,7 +137,7 @@ def _order(files: Files, transits: Sheet) -> Iterator[str]:
 
 
 def _signs_on_grid(
-    files: Files,
+    files: DatasetFiles,
     times: Sequence[Fraction],
     bounds: Sequence[Fraction],
     directions: Sequence[Fraction],
@@ -157,7 +157,7 @@ def _signs_on_grid(
             yield f"grid.csv: t = {float(t):.17g}: the sign of vx contradicts the transits before it"
 
 
-def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
+def _bound_column(files: DatasetFiles, transits: Sheet) -> Iterator[str]:
     """Check each bound on a time: at least its rounding, at most what runs or proof leave open."""
     manifest = files.manifest
     half_unit = Fraction(1, 2 * 10 ** manifest.decimals["transits"]["t"])
@@ -177,7 +177,7 @@ def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
         yield f"{MANIFEST}: bounds.transits.t is not the largest bound of transits.csv"
 
 
-def largest_jerk(files: Files) -> Fraction:
+def largest_jerk(files: DatasetFiles) -> Fraction:
     """Return a bound on the rate of xddot, in m/s³; where ax is small against it, a zero may graze.
 
     With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at
@@ -192,7 +192,7 @@ def largest_jerk(files: Files) -> Fraction:
     return to_fraction(8 * k.length * (pull + v**2 + w**2) * (v + w))
 
 
-def problems(files: Files) -> Iterator[str]:
+def problems(files: DatasetFiles) -> Iterator[str]:
     """Yield what in manifest, page and vectors does not follow from the scene and the tables."""
     manifest = files.manifest
     formulation = manifest.run.formulation
@@ -220,7 +220,7 @@ def problems(files: Files) -> Iterator[str]:
         yield from _derived(files)
 
 
-def _expected(files: Files) -> Manifest:
+def _expected(files: DatasetFiles) -> Manifest:
     """Return the manifest with everything that follows from scene and tables as it should be."""
     manifest = files.manifest
     scene = files.scene
@@ -246,7 +246,7 @@ def _expected(files: Files) -> Manifest:
     )
 
 
-def _command_follows(files: Files) -> bool:
+def _command_follows(files: DatasetFiles) -> bool:
     """Return whether the command is that of the scene, and makes the files that there are."""
     manifest = files.manifest
     options = options_in(manifest.command)
@@ -262,7 +262,7 @@ def _command_follows(files: Files) -> bool:
     )
 
 
-def _is_its_id(files: Files) -> bool:
+def _is_its_id(files: DatasetFiles) -> bool:
     """Return whether an id names the scene's changes.
 
     Against a shipped scene it names all; for a user's own scene, some fields that it has.
@@ -277,7 +277,7 @@ def _is_its_id(files: Files) -> bool:
     return name.startswith(f"{full_id}+") and fields.issuperset(changes_in(name))
 
 
-def _possible(files: Files) -> Iterator[str]:
+def _possible(files: DatasetFiles) -> Iterator[str]:
     """Check that the possible transits lie in intervals in order."""
     last = Fraction(0)
     for interval in files.manifest.possible:
@@ -288,7 +288,7 @@ def _possible(files: Files) -> Iterator[str]:
         last = high
 
 
-def _sections(files: Files) -> Iterator[str]:
+def _sections(files: DatasetFiles) -> Iterator[str]:
     """Check that `sections.csv` has the scene's sections in order, their rows counted.
 
     A bound is at least half a unit of the last digit.
@@ -389,7 +389,7 @@ def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
             yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
 
 
-def _derived(files: Files) -> Iterator[str]:
+def _derived(files: DatasetFiles) -> Iterator[str]:
     """Check the files that follow from manifest and tables, to the byte."""
     for name, text in derived_texts(files.manifest, files.tables).items():
         if name in files.texts and files.texts[name] != text:

@@ -128,6 +128,7 @@ def test_ranges_on_disk_take_the_place_of_the_scene(score, file, tmp_path):
         (("rows", "--plot", "a.svg"), "no such option where inputs are uncertain"),
         (("rows", "--run", "program"), "no such option where inputs are uncertain"),
         (("rows", "--uncertain", "length=±70"), "expected a number above 0"),
+        (("-", "--transits", "-"), "standard input once"),
         (("late",), "expected one up to"),
     ],
 )

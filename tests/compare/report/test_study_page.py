@@ -19,7 +19,7 @@ from compare.report import page as parts
 from compare.report import study_page
 from compare.report.page import Html, PageTable
 from compare.report.pareto import tidy
-from compare.report.study_tables import busy, cpu, setting, text_table
+from compare.report.study_tables import busy, cpu, failures, setting, text_table
 from compare.studies.campaign import load_per_core
 from compare.studies.row import Row
 from reference.status import Status
@@ -183,6 +183,16 @@ def test_failures_are_listed_with_their_reason_and_each_way_to_fail_with_what_to
         Status.MISSED_TRANSITS.meaning,
         Status.MISSED_TRANSITS.advice,
     ]
+
+
+def test_the_times_that_failed_rows_reached_are_in_increasing_order_and_each_once():
+    rows = [
+        row("scipy_lsoda", tol, None, 0.7, Status.GAVE_UP, reason="too stiff", reached_t=reached_t)
+        for tol, reached_t in ((1e-6, 100.0), (1e-7, 20.0), (1e-8, 100.0), (1e-9, None))
+    ]
+    html = failures(rows)
+    assert html is not None
+    assert "20, 100<" in html
 
 
 def test_the_front_is_a_table_of_its_own(read):

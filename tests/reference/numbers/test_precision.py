@@ -21,9 +21,9 @@ from reference.numbers.precision import (
     decimals_for,
     digits_that_hold,
     double_below,
+    endpoint_text,
     fixed_decimal,
     magnitude,
-    outward,
     real,
     rounded,
     rounded_up,
@@ -46,6 +46,15 @@ def test_an_mpf_and_back_is_within_half_a_unit(value):
     ctx = context(200)
     back = to_fraction(to_mpf(value, ctx))
     assert abs(back - value) <= abs(value) * Fraction(1, 2**200)
+
+
+@given(st.integers(1, 10**30), st.integers(1, 10**30))
+def test_a_long_numerator_costs_one_more_rounding(numerator, denominator):
+    value = Fraction(numerator, denominator)
+    relative = abs(to_fraction(to_mpf(value, context(53))) / value - 1)
+    assert relative < Fraction(1, 2**52)
+    if value.numerator < 2**53:
+        assert relative <= Fraction(1, 2**53)
 
 
 def test_infinity_is_no_fraction():
@@ -119,6 +128,17 @@ def test_a_number_is_shown_with_the_digits_that_its_error_leaves(value, error, t
     assert digits_that_hold(value, error) == text
 
 
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(0.1, 0.0, "0.1"), (0.0, 0.0, "0.0"), (0.0, 0.5, "± 5.0e-01"), (0.1, math.inf, "± inf"),
+     (0.1, math.nan, "–"), (math.nan, 0.1, "–"), (math.inf, 0.1, "–"), (0, 0, "0.0")],
+)  # fmt: skip
+def test_a_number_without_an_error_is_shown_in_full_and_an_unknown_one_as_a_dash(
+    value, error, text
+):
+    assert digits_that_hold(value, error) == text
+
+
 @given(st.integers(1, 2000))
 def test_so_many_bits_hold_the_digits_and_one_less_do_not(digits):
     assert 2 ** bits_of(digits) >= 10**digits > 2 ** (bits_of(digits) - 1)
@@ -126,9 +146,12 @@ def test_so_many_bits_hold_the_digits_and_one_less_do_not(digits):
 
 def test_the_ends_of_an_interval_are_rounded_outwards():
     third = Fraction(1, 3)
-    assert (outward(third, -1), outward(third, 1)) == (f"0.{'3' * 20}", f"0.{'3' * 19}4")
-    assert (outward(-third, -1, 2), outward(-third, 1, 2)) == ("-0.34", "-0.33")
-    assert outward(Fraction(1, 4), -1, 2) == outward(Fraction(1, 4), 1, 2) == "0.25"
+    assert (endpoint_text(third, -1), endpoint_text(third, 1)) == (
+        f"0.{'3' * 20}",
+        f"0.{'3' * 19}4",
+    )
+    assert (endpoint_text(-third, -1, 2), endpoint_text(-third, 1, 2)) == ("-0.34", "-0.33")
+    assert endpoint_text(Fraction(1, 4), -1, 2) == endpoint_text(Fraction(1, 4), 1, 2) == "0.25"
 
 
 def test_a_column_of_zeros_and_one_of_large_numbers_have_their_decimals():

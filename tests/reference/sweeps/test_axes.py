@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from reference import InputError
-from reference.sweeps.axes import MOST_VALUES, axis, grid, listed, varied_names
+from reference.sweeps.axes import MAX_VALUES, axis, combinations, rows_of_file, varied_names
 
 
 def texts(word: str) -> list[str]:
@@ -34,7 +34,7 @@ def test_steps_are_exact_decimals_with_both_ends_in():
     ],
 )
 def test_numbers_are_the_nearest_sums_of_two_doubles(word):
-    made = grid([word], "decimal")
+    made = combinations([word], "decimal")
     rows = np.linspace(0, made.count - 1, 50).astype(np.int64)
     (numbers,) = made.numbers(rows, "decimal").values()
     for row, high, low in zip(rows.tolist(), numbers.high, numbers.low, strict=True):
@@ -48,7 +48,7 @@ def test_numbers_are_the_nearest_sums_of_two_doubles(word):
 
 
 def test_the_rows_of_a_grid_are_all_combinations_the_last_field_fastest():
-    made = grid(["site.latitude=-90:90:0.01", "release.x=0.1,0.2,0.3"], "decimal")
+    made = combinations(["site.latitude=-90:90:0.01", "release.x=0.1,0.2,0.3"], "decimal")
     assert (made.shape, made.count) == ((18_001, 3), 18_001 * 3)
     assert made.texts(0) == {"site.latitude": "-90", "release.x": "0.1"}
     assert made.texts(made.count - 1) == {"site.latitude": "90", "release.x": "0.3"}
@@ -61,7 +61,7 @@ def test_more_rows_than_can_be_counted_on_are_refused():
     with pytest.raises(
         InputError, match=r"got '1002001000 rows', expected at most 100,000,000 rows"
     ):
-        grid(
+        combinations(
             ["site.latitude=0:1:0.001", "release.x=0:1:0.001", "release.y=0:0.999:0.001"], "decimal"
         )
     with pytest.raises(InputError, match=r"at most 10,000,000 values"):
@@ -96,9 +96,29 @@ def test_a_wrong_axis_is_named(word, field, got):
     assert (error.value.field, error.value.got) == (field, got)
 
 
+@pytest.mark.parametrize(
+    ("reading", "word"),
+    [
+        ("decimal", "site.latitude=1,1.0"),
+        ("decimal", "site.latitude=0.5,50e-2"),
+        ("decimal", "site.latitude=-0,0"),
+        ("decimal", "site.gravity_is=effective,effective"),
+        ("binary64", "site.latitude=0.1,0.1000000000000000000001"),
+    ],
+)
+def test_the_same_value_written_twice_is_refused(reading, word):
+    with pytest.raises(InputError, match="each value once"):
+        axis(word, reading)
+
+
+def test_decimals_next_to_each_other_are_different_values():
+    values = texts("site.latitude=0.1,0.1000000000000000000001")
+    assert values == ["0.1", "0.1000000000000000000001"]
+
+
 def test_a_field_is_varied_once():
     with pytest.raises(InputError, match="each field once"):
-        grid(["site.latitude=1,2", "site.latitude=3"], "decimal")
+        combinations(["site.latitude=1,2", "site.latitude=3"], "decimal")
 
 
 def test_values_come_from_a_file(tmp_path):
@@ -114,7 +134,9 @@ def test_values_come_from_a_file(tmp_path):
 def test_only_regular_files_hold_values(tmp_path, option):
     def read(path):
         return (
-            listed(Path(path)) if option == "--rows" else axis(f"site.latitude=@{path}", "decimal")
+            rows_of_file(Path(path))
+            if option == "--rows"
+            else axis(f"site.latitude=@{path}", "decimal")
         )
 
     for name in ("pipe.csv", "pipe.parquet"):
@@ -130,7 +152,7 @@ def test_only_regular_files_hold_values(tmp_path, option):
 @pytest.mark.parametrize(
     ("name", "count", "said"),
     [
-        ("site.latitude", MOST_VALUES + 1, "at most 10,000,000"),
+        ("site.latitude", MAX_VALUES + 1, "at most 10,000,000"),
         ("nothing", 1, "a field that a sweep can vary"),
     ],
 )
@@ -143,15 +165,15 @@ def test_rows_of_parquet_are_counted_before_they_are_read(tmp_path, name, count,
     footer = 8 + int.from_bytes(data[-8:-4], "little")
     path.write_bytes(data[:4] + bytes(len(data) - 4 - footer) + data[-footer:])
     with pytest.raises(InputError, match=said):
-        listed(path)
+        rows_of_file(path)
 
 
 @pytest.mark.long  # a gigabyte of memory
 def test_more_lines_than_may_be_held_are_refused(tmp_path):
     path = tmp_path / "rows.csv"
-    path.write_text("site.latitude\n" + "1\n" * (MOST_VALUES + 1))
+    path.write_text("site.latitude\n" + "1\n" * (MAX_VALUES + 1))
     with pytest.raises(InputError, match="1 to 10,000,000 rows"):
-        listed(path)
+        rows_of_file(path)
 
 
 @pytest.mark.parametrize(
@@ -167,7 +189,22 @@ def test_more_lines_than_may_be_held_are_refused(tmp_path):
 def test_a_wrong_file_of_rows_is_named(tmp_path, text, said):
     (tmp_path / "rows.csv").write_text(text)
     with pytest.raises(InputError, match=said):
-        listed(tmp_path / "rows.csv")
+        rows_of_file(tmp_path / "rows.csv")
+
+
+def test_a_line_of_a_wrong_length_is_named_by_its_number_in_the_file(tmp_path):
+    path = tmp_path / "rows.csv"
+    path.write_text("\nsite.latitude,release.x\n\n1,2\n\n3\n")
+    with pytest.raises(InputError, match=r"rows\.csv, line 6'.*It has 1\."):
+        rows_of_file(path)
+
+
+def test_what_is_wrong_with_rows_is_found_for_each_of_them(tmp_path):
+    path = tmp_path / "rows.csv"
+    path.write_text("site.latitude\n1\n91\n95\n")
+    wrong = rows_of_file(path).wrong(range(3), "decimal")
+    assert list(wrong) == [1, 2]
+    assert "91" in wrong[1]
 
 
 def test_rows_of_parquet_are_exactly_the_doubles_that_they_hold(tmp_path):
@@ -177,12 +214,12 @@ def test_rows_of_parquet_are_exactly_the_doubles_that_they_hold(tmp_path):
     pq.write_table(
         pa.table({"release.x": [0.1, 0.25], "release.y": ["0.1", "0.3"]}), tmp_path / "rows.parquet"
     )
-    table = listed(tmp_path / "rows.parquet")
+    table = rows_of_file(tmp_path / "rows.parquet")
     assert Fraction(table.texts(0)["release.x"]) == Fraction(0.1)
     assert table.texts(1) == {"release.x": "0.25", "release.y": "0.3"}
     (tmp_path / "bad.parquet").write_text("nothing")
     with pytest.raises(InputError, match="a readable file"):
-        listed(tmp_path / "bad.parquet")
+        rows_of_file(tmp_path / "bad.parquet")
 
 
 def test_every_number_of_a_scene_can_be_varied():
@@ -207,11 +244,14 @@ def test_every_number_of_a_scene_can_be_varied():
 def test_rows_are_read_as_spreadsheets_and_data_frames_write_them(tmp_path, text):
     path = tmp_path / "rows.csv"
     path.write_text(text, encoding="utf-8", newline="")
-    assert listed(path).values == {"site.latitude": ("48.85", "-10"), "release.x": ("0.3", "1")}
+    assert rows_of_file(path).values == {
+        "site.latitude": ("48.85", "-10"),
+        "release.x": ("0.3", "1"),
+    }
 
 
 def test_a_comma_before_three_digits_is_not_guessed_at(tmp_path):
     path = tmp_path / "rows.csv"
     path.write_text("site.latitude;site.altitude\n48,85;1,250\n")
     with pytest.raises(InputError, match=r"got '1,250', expected a point.*thousands"):
-        listed(path)
+        rows_of_file(path)

@@ -18,7 +18,7 @@ from reference.engines.registry import batches
 from reference.engines.row_zeros import MODEL, RowMotion
 from reference.model.constants import Constants
 from reference.scenes.scene import load_scene
-from reference.sweeps.estimate import bend_of_pairs, judged
+from reference.sweeps.estimate import bend_of_pairs, errors_by_moved_runs
 
 ENGINES = [name for name, engine in batches().items() if engine.installed]
 
@@ -90,7 +90,7 @@ def test_an_angle_next_to_the_top_is_as_uncertain_as_its_cosine(engine, paris):
     )
     run = batches()[engine].solve(rows, RunOptions())
     error = np.abs(np.degrees(run.largest_angle) - [float(angle) for angle in angles])
-    assert (error <= judged(batches()[engine], rows, run)[0].angle).all()
+    assert (error <= errors_by_moved_runs(batches()[engine], rows, run)[0].angle).all()
 
 
 def test_between_close_transits_xdot_bends_no_more_than_is_taken(paris, size, tally):

@@ -16,7 +16,7 @@ from sampled import one_in
 from reference import load_scene, solve, sweep
 from reference.engines.batch_interface import RunOptions
 from reference.engines.registry import batches, engines, run
-from reference.sweeps.estimate import judged, passages
+from reference.sweeps.estimate import errors_by_moved_runs, passages
 from reference.sweeps.promote import audited, promoted
 
 ENGINES = [name for name, engine in batches().items() if engine.installed]
@@ -51,7 +51,7 @@ def test_passages_of_random_rows_are_those_of_limbs_within_their_errors(drawn, e
     many, words, truth = drawn
     solver, rows = batches()[engine], rows_of(many)
     base = solver.solve(rows, RunOptions())
-    errors, _ = judged(solver, rows, base)
+    errors, _ = errors_by_moved_runs(solver, rows, base)
     undecided, worst, count = 0, 0.0, 0
     for word in words:
         columns, unsure = passages(solver, word, rows_of(many, word), base, errors)

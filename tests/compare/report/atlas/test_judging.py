@@ -16,7 +16,7 @@ from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
 from compare.diagnosis.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from compare.report.atlas.pages import source
-from compare.report.atlas.parts import embedded, function_made, plain
+from compare.report.atlas.parts import golden_function, page_data, plain
 from reference import InputError
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -46,7 +46,7 @@ def run(golden, cases=(), headers=()):
     asked = [
         {"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases
     ]
-    truth = embedded(golden, function_made(golden))
+    truth = page_data(golden, golden_function(golden))
     document = {"truth": truth, "words": truth["words"], "cases": asked, "headers": list(headers)}
     done = subprocess.run(
         ["node", "-e", script],
@@ -468,7 +468,7 @@ def test_an_extra_transit_is_excused_by_xdot_as_score_does(at_any_time, tmp_path
     times = golden.transits["t"]
     size = float(np.hypot(golden.x, golden.y).max())
     # of the position, for an error of the time
-    rate = np.abs(golden.transits["ax"]) / embedded(golden)["omega"]
+    rate = np.abs(golden.transits["ax"]) / page_data(golden)["omega"]
     cases = {
         "two_within": np.sort([*times, times[3] + 0.5e-6 * size / rate[3]]),
         "two_beyond": np.sort([*times, times[3] + 2e-6 * size / rate[3]]),

@@ -17,6 +17,7 @@ import reference
 from compare import judge
 from compare.report.atlas.entry import Entry, StudyResults, entries, kept_studies, studies_folder
 from compare.report.atlas.pages import scene_page
+from compare.report.atlas.parts import plain, vocabulary
 from reference.scenes.shipped import golden_root
 
 CHROMIUM = next(
@@ -402,3 +403,11 @@ def test_scenes_are_filtered_by_flag_and_level(atlas, tmp_path):
         ["0 of 3 scenes", [], 0],
         ["2 of 3 scenes", ["conical", "paris"], 2],
     ]
+
+
+def test_what_has_no_form_in_json_is_refused_and_no_word_of_the_vocabulary_is_lost():
+    with pytest.raises(TypeError, match="no form in JSON"):
+        json.dumps({"unknown": object()}, default=plain)
+    words = json.loads(json.dumps(vocabulary(), default=plain))
+    assert [name for name, value in words.items() if value is None] == []
+    assert "#" in words["MARKS"]
