@@ -15,6 +15,7 @@ import ssl
 import sys
 import tomllib
 import warnings
+import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -92,6 +93,12 @@ def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them():
     assert {page: words for page, words in languages.items() if words} == LANGUAGES
 
 
+def _texts(picture):
+    """Return the texts of a picture: its names, titles and ticks."""
+    texts = ET.fromstring(picture.read_bytes()).iter("{http://www.w3.org/2000/svg}text")
+    return [text.text for text in texts]
+
+
 def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path, typed):
     assert write_files(TUTORIAL, tmp_path) == [
         "pendulum.py",
@@ -102,7 +109,8 @@ def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path
     for command, shown in commands(TUTORIAL):
         got = typed(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
-    assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
+    assert (tmp_path / "foucault.xml").is_file()
+    assert _texts(tmp_path / "error.svg") == _texts(ROOT / "docs/tutorial.svg")
 
 
 def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path, typed):

@@ -25,6 +25,10 @@ INKS = {
     "ink": "#1b1b1b", "faint": "#6b6b6b", "rule": "#dcdcdc", "band": "#e9e9e9", "paper": "#fefefe", "blue": "#0072b2",
 }  # fmt: skip
 INK, FAINT, RULE, BAND, PAPER, BLUE = INKS.values()
+# the same on a dark page, as in page.css
+DARK_INKS = {
+    "ink": "#e6e6e6", "faint": "#a4a4a4", "rule": "#3b3b3b", "band": "#272727", "paper": "#171717", "blue": "#3d9fdc",
+}  # fmt: skip
 # Okabe and Ito's palette for colour-blind readers; in grey the line styles tell lines apart
 COLOURS = (BLUE, "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", INK)
 # lines to compare others with
@@ -58,6 +62,7 @@ _PARAMETERS = {
         INK,
     ),
     **dict.fromkeys(("axes.edgecolor", "xtick.color", "ytick.color"), FAINT),
+    **dict.fromkeys(("figure.facecolor", "axes.facecolor"), PAPER),
     **dict.fromkeys(("axes.spines.top", "axes.spines.right"), False),
     "axes.titlesize": 9,
     "axes.titlelocation": "left",
@@ -70,6 +75,7 @@ _PARAMETERS = {
 _NO_DATE = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
 _NARROW = 0.06  # a band below this part of the height of the axes has its text above it
 _GAP = 5  # between a line's end and its name, in points
+_NAME_GAP = 0.045  # from name to name, over the height of the axes
 
 
 def check_matplotlib(field: str) -> None:
@@ -138,7 +144,28 @@ def line_style(colour: str, place: int) -> dict[str, Any]:
 
 
 def picture(figure: Any, form: str = "svg") -> bytes:
-    """Return the content of a picture file: svg, pdf or png, without a date."""
+    """Return the content of a picture file: svg, pdf or png. An svg file follows the reader's light or dark scheme."""
+    content = _saved(figure, form)
+    if form != "svg":
+        return content
+    return content.replace(b"</style>", f"\n{_dark_scheme()}</style>".encode(), 1)
+
+
+def _dark_scheme() -> str:
+    """Return the rules that replace the inks on a dark page.
+
+    The colours stay in each element, so a program that does not know the rules draws the light picture.
+    """
+    rules = []
+    for name, light in INKS.items():
+        for use in ("fill", "stroke"):
+            rule = f'[style*="{use}: {light}"] {{ {use}: {DARK_INKS[name]} !important }}'
+            rules.append(rule)
+    return "@media (prefers-color-scheme: dark) {\n" + "\n".join(rules) + "\n}\n"
+
+
+def _saved(figure: Any, form: str) -> bytes:
+    """Return the figure as svg, pdf or png, without a date."""
     content = io.BytesIO()
     figure.savefig(content, format=form, dpi=150, metadata=_NO_DATE.get(form))
     return content.getvalue()
@@ -158,7 +185,7 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
     for part in (figure, *figure.axes):
         part.patch.set_visible(False)  # the page's background shows
     with rc_context({"svg.hashsalt": name}):
-        text = picture(figure).decode()
+        text = _saved(figure, "svg").decode()
     text = text[text.index(">", text.index("<svg")) + 1 :]
     text = re.sub(
         r"<metadata>.*?</metadata>\s*|<defs>\s*<style.*?</defs>\s*|<!--.*?-->\s*|(?<=\n) +",
@@ -184,12 +211,11 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
     return opening + text.strip() + "\n"
 
 
-def power_of_ten(value: float) -> str:
-    """Return a tick's label: 0.01, 1 or 100 near 1, and 10⁻⁹ farther away."""
-    exponent = round(math.log10(value))
-    if -3 < exponent < 4:
-        return f"{value:g}"
-    return "10" + str(exponent).translate(_RAISED)
+def powers_of_ten(exponents: Sequence[int]) -> list[str]:
+    """Return the labels of ticks, all in one style: 0.01, 1 and 100 if all are near 1, otherwise 10⁻², 10⁰ and 10²."""
+    if all(-3 < exponent < 4 for exponent in exponents):
+        return [f"{10.0**exponent:g}" for exponent in exponents]
+    return ["10" + str(exponent).translate(_RAISED) for exponent in exponents]
 
 
 def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8) -> None:
@@ -199,8 +225,9 @@ def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8)
     first = math.ceil(math.log10(low) - 1e-9)
     last = math.floor(math.log10(high) + 1e-9)
     every = max(1, math.ceil((last - first + 1) / labels))
-    ticks = [10.0**n for n in range(first, last + 1) if n % every == 0]
-    getattr(axes, f"set_{which}ticks")(ticks, list(map(power_of_ten, ticks)))
+    exponents = [n for n in range(first, last + 1) if n % every == 0]
+    ticks = [10.0**n for n in exponents]
+    getattr(axes, f"set_{which}ticks")(ticks, powers_of_ten(exponents))
     axes.minorticks_off()
     axes.grid(True, axis=which)
 
@@ -283,6 +310,36 @@ def name_ends(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> No
             ha="right" if on_the_left else "left",
             va="center_baseline",
         )
+
+
+def name_beside(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> None:
+    """Write the name of each line right of logarithmic axes, at the height of its end, where no other name is."""
+    low, high = axes.get_ylim()
+    upwards = sorted(lines, key=lambda line: line.y[-1])
+    heights = [math.log(line.y[-1] / low) / math.log(high / low) for line in upwards]
+    gap = min(_NAME_GAP, 1 / len(lines))
+    for line, height in zip(upwards, _spread(heights, gap), strict=True):
+        axes.text(
+            1.012,
+            height,
+            line.name,
+            transform=axes.transAxes,
+            fontsize=size,
+            color=line.style["color"],
+            va="center_baseline",
+        )
+
+
+def _spread(heights: Sequence[float], gap: float) -> list[float]:
+    """Return ascending heights at least `gap` apart and at most 1, near the given ones, which ascend."""
+    spread = list(heights)
+    for i in range(1, len(spread)):
+        spread[i] = max(spread[i], spread[i - 1] + gap)
+    highest = 1.0
+    for i in reversed(range(len(spread))):
+        spread[i] = min(spread[i], highest)
+        highest = spread[i] - gap
+    return spread
 
 
 def band(axes: Any, bound_m: float) -> None:

@@ -20,7 +20,7 @@ from .motion import POINTS, PicturedMotion
 DOTS = 360  # most dots of one kind in a panel
 LINE = 1200  # most points of a path
 DOT = 3.0  # diameter of a dot in points
-PANEL = (3.5, 3.0)  # width and height in inches
+PANEL = (3.5, 3.2)  # width and height in inches
 SEEN_FROM = np.radians(-60.0)  # azimuth of the eye that sees the sphere
 ABOVE = np.radians(20.0)  # and its elevation
 _LENGTH_UNITS = (  # factor, symbol, and the smallest length in m that is shown in it
@@ -56,11 +56,14 @@ def path(axes: Any, motion: PicturedMotion) -> None:
     line = _line(motion) * scale
     rows = _thinned(motion.rows, LINE) * scale
     first = POINTS + 1 if motion.swings else len(line)
-    axes.plot(line[first:, 0], line[first:, 1], color=COLOURS[1], linewidth=0.7)
-    axes.plot(line[:first, 0], line[:first, 1], color=BLUE, linewidth=1.1 if motion.swings else 0.8)
-    if not len(line):
-        _dots(axes, rows[:, 0], rows[:, 1], BLUE)
-    _mark_release(axes, *rows[0, :2])
+    if motion.swings:
+        axes.plot(*line[:first, :2].T, color=BLUE, linewidth=1.1, label="first swing", zorder=3)
+        axes.plot(*line[first:, :2].T, color=COLOURS[1], linewidth=0.7, label="later swings")
+    elif len(line):
+        axes.plot(*line[:, :2].T, color=BLUE, linewidth=0.8, label="path")
+    else:
+        _dots(axes, rows[:, 0], rows[:, 1], BLUE, "rows")
+    _mark_start(axes, motion, *rows[0, :2])
     edge = 1.08 * size * scale
     axes.set(
         xlim=(-edge, edge),
@@ -69,7 +72,10 @@ def path(axes: Any, motion: PicturedMotion) -> None:
         title=f"Path from above: {_shown(motion)}",
     )
     axes.set(xlabel=f"x in {unit}, east", ylabel=f"y in {unit}, north")
+    axes.xaxis.set_major_locator(_length_ticks())
+    axes.yaxis.set_major_locator(_length_ticks())
     axes.grid(True)
+    _key(axes)
 
 
 def sphere(axes: Any, motion: PicturedMotion) -> None:
@@ -81,12 +87,12 @@ def sphere(axes: Any, motion: PicturedMotion) -> None:
     axes.plot(np.cos(turn), np.sin(turn), color=FAINT, linewidth=0.8)
 
     axes.plot(*equator.half(front=False), color=FAINT, linewidth=0.6, linestyle=(0, (1, 3)))
-    axes.plot(*bob.half(front=False), color=BLUE, linewidth=0.5, alpha=0.5)
+    axes.plot(*bob.half(front=False), color=BLUE, linewidth=0.5, alpha=0.5, label="far side")
     axes.plot(*equator.half(front=True), color=FAINT, linewidth=0.6)
-    axes.plot(*bob.half(front=True), color=BLUE, linewidth=0.9)
+    axes.plot(*bob.half(front=True), color=BLUE, linewidth=0.9, label="near side")
 
-    _mark_release(axes, bob.right[0], bob.up[0])
-    axes.plot([0], [0], marker="+", color=INK, markersize=6)
+    _mark_start(axes, motion, bob.right[0], bob.up[0])
+    axes.plot([0], [0], marker="+", color=INK, markersize=6, linestyle="none", label="pivot")
     axes.set(
         xlim=(-1.08, 1.08),
         ylim=(-1.08, 1.08),
@@ -94,6 +100,7 @@ def sphere(axes: Any, motion: PicturedMotion) -> None:
         title=f"On the sphere: {_shown(motion)}",
     )
     axes.set_axis_off()
+    _key(axes, below=0.0)
 
 
 def plane(axes: Any, motion: PicturedMotion) -> None:
@@ -116,6 +123,7 @@ def plane(axes: Any, motion: PicturedMotion) -> None:
         ylabel="degrees, from east to north",
     )
     axes.set(title="Azimuth of the swing plane")
+    axes.xaxis.set_major_locator(time_ticks())
     axes.grid(True)
 
 
@@ -123,14 +131,18 @@ def transits(axes: Any, motion: PicturedMotion) -> None:
     """Draw x at each transit against its time: the eastern and the western turning points."""
     scale, unit = length_unit(float(np.abs(motion.transit_x).max(initial=0.0)) or 1.0)
     seconds, word = time_unit(float(motion.t[-1]))
-    for direction, colour in ((1, COLOURS[1]), (-1, BLUE)):
+    ends = ((-1, BLUE, "eastern end"), (1, COLOURS[1], "western end"))
+    for direction, colour, name in ends:
         selected = motion.directions == direction
         t = _thinned(motion.transit_t[selected], DOTS // 2)
         x = _thinned(motion.transit_x[selected], DOTS // 2)
-        _dots(axes, t * seconds, x * scale, colour)
+        if len(t):
+            _dots(axes, t * seconds, x * scale, colour, name)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
     axes.set(title=f"Where the bob turns in x: {counted(len(motion.transit_t), 'transit')}")
+    axes.xaxis.set_major_locator(time_ticks())
     axes.grid(True)
+    _key(axes)
 
 
 def panels(motion: PicturedMotion) -> dict[str, Callable[[Any, PicturedMotion], None]]:
@@ -266,10 +278,33 @@ def _projected(points: Array) -> _Projected:
     )
 
 
-def _dots(axes: Any, x: Array, y: Array, colour: str) -> None:
-    axes.plot(x, y, linestyle="none", marker="o", markersize=DOT, markeredgewidth=0, color=colour)
+def time_ticks() -> Any:
+    """Return a locator of ticks at times that a clock shows: every 6 of 24 h, every 10 of 60 min."""
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(6, steps=[1, 2, 3, 6, 10])
 
 
-def _mark_release(axes: Any, x: float, y: float) -> None:
-    """Mark the release."""
-    axes.plot([x], [y], marker="o", markersize=4.5, color=INK, linestyle="none", zorder=4)
+def _length_ticks() -> Any:
+    """Return a locator that gives both axes of a path the same ticks."""
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(4, steps=[1, 2, 5, 10])
+
+
+def _key(axes: Any, below: float = 0.2) -> None:
+    """Name what is drawn in a row under the axes, this part of their height below them."""
+    where = {"loc": "upper center", "bbox_to_anchor": (0.5, -below)}
+    axes.legend(ncols=4, fontsize=7.5, handlelength=1.2, columnspacing=1.2, **where)
+
+
+def _dots(axes: Any, x: Array, y: Array, colour: str, name: str = "") -> None:
+    style = {"linestyle": "none", "marker": "o", "markersize": DOT, "markeredgewidth": 0}
+    axes.plot(x, y, color=colour, label=name or None, **style)
+
+
+def _mark_start(axes: Any, motion: PicturedMotion, x: float, y: float) -> None:
+    """Mark the release, or the first row of a file that begins later."""
+    name = "release" if motion.t[0] == 0 else "first row"
+    style = {"marker": "o", "markersize": 4.5, "linestyle": "none"}
+    axes.plot([x], [y], color=INK, label=name, zorder=4, **style)

@@ -25,17 +25,19 @@ from .drawing import (
     band,
     check_target,
     draw,
-    legend,
     line_style,
     logarithmic,
+    name_beside,
     picture,
     sheet,
 )
 from .folder import write_file
 from .motion import PicturedMotion
-from .motion_pictures import motion_picture, panels
+from .motion_pictures import motion_picture, panels, time_ticks, time_unit
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
+LINE_WIDTH = 1.3  # points
+WIDEST = 5.0  # points
 
 
 @dataclass(frozen=True)
@@ -119,25 +121,39 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     bound_m = max(score.errors.bound_m for score in scores)
     tolerance_m = min(score.tolerance_m for score in scores)
     largest_m = max(score.errors.max_m for score in scores)
-    lowest_m = bound_m / 30
+    scale, unit = time_unit(max(float(score.errors.t[-1]) for score in scores))
+    lowest_m = max(_smallest_m(scores), bound_m / 30)
     top_m = max(10 * bound_m, largest_m)
+    # each line is thinner than those below it, so that two that coincide are both seen
+    widths = np.linspace(min(LINE_WIDTH * len(scores), WIDEST), LINE_WIDTH, len(scores))
     lines = []
     for i, score in enumerate(scores):
         t, error = _thinned(score.errors.t, np.maximum(score.errors.position, lowest_m))
         name = shortened(Path(score.candidate.name).name, LONGEST_NAME)
-        style = line_style(COLOURS[i % len(COLOURS)], i)
-        lines.append(ChartLine(name, t.tolist(), error.tolist(), style))
+        style = {**line_style(COLOURS[i % len(COLOURS)], i), "linewidth": widths[i]}
+        lines.append(ChartLine(name, (t * scale).tolist(), error.tolist(), style))
     end = max(line.x[-1] for line in lines)
     if tolerance_m < 100 * top_m:
         name = f"tolerance, {tolerance_m:.1e} m"
         lines.append(ChartLine(name, [0, end], [tolerance_m, tolerance_m], GUIDE))
         top_m = max(top_m, tolerance_m)
-    logarithmic(axes, "y", lowest_m, 3 * top_m, 12)
-    axes.set(xlim=(0, end or 1), xlabel="t in s", ylabel="position error in m")
+        lowest_m = min(lowest_m, tolerance_m)
+    logarithmic(axes, "y", lowest_m / 2, 3 * top_m, 12)
+    axes.set(xlim=(0, end or 1), xlabel=f"t in {unit}", ylabel="position error in m")
     axes.set_title(f"{scores[0].scene.id}: error against time")
+    axes.xaxis.set_major_locator(time_ticks())
     band(axes, bound_m)
     draw(axes, lines)
-    legend(axes, lines)
+    name_beside(axes, lines)
+
+
+def _smallest_m(scores: Sequence[Score]) -> float:
+    """Return the smallest error in m after t = 0, where candidates are given the right position; 0 if there is none."""
+    smallest_m = []
+    for score in scores:
+        later = score.errors.position[score.errors.t > 0]
+        smallest_m += later[later > 0].tolist()
+    return float(min(smallest_m, default=0.0))
 
 
 def _thinned(t: Array, error: Array, points: int = 2000) -> tuple[Array, Array]:

@@ -25,6 +25,12 @@ text { font: 12px sans-serif; text-anchor: middle; fill: #222 }
 rect { fill: #eef3f8; stroke: #5a7896 }
 .frame { fill: none; stroke: #b9c6d3 }
 line { stroke: #8aa }
+@media (prefers-color-scheme: dark) {
+text { fill: #ddd }
+rect { fill: #1d2a37; stroke: #7f9cb8 }
+.frame { fill: none; stroke: #4d5c6b }
+line { stroke: #688 }
+}
 </style>"""
 Arrows = set[tuple[str, str]]
 

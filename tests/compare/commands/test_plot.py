@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 import sys
+import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
 
+import compare
 import reference
 from compare.candidates.arrays import candidate_of
 from compare.observed.swing_plane import Gauge
+from compare.report.drawing import COLOURS
 from compare.report.motion import PicturedMotion
 from compare.report.motion_pictures import length_unit, time_unit
-from compare.report.plot import motion_of
+from compare.report.plot import error_picture, motion_of
 
 pytest.importorskip("matplotlib")
 
@@ -101,6 +105,54 @@ def test_a_dataset_and_a_file_are_drawn(foucault, tmp_path):
     mine.write_text("t,x,y\n" + "".join(f"{t},{t * t},{t}\n" for t in range(9)))
     assert foucault("plot", mine, "--out", png, "--what", "path")[0] == 0
     assert png.read_bytes().startswith(b"\x89PNG")
+
+
+def texts_of(path):
+    texts = ET.fromstring(path.read_bytes()).iter("{http://www.w3.org/2000/svg}text")
+    return [text.text for text in texts]
+
+
+def test_a_picture_names_what_it_draws(foucault, tmp_path):
+    out = tmp_path / "paris.svg"
+    foucault("plot", "paris", "--out", out)
+    names = {"first swing", "later swings", "release", "eastern end", "western end"}
+    assert names <= set(texts_of(out))
+
+
+@pytest.mark.parametrize(("start", "name"), [(0, "release"), (5, "first row")])
+def test_the_first_row_is_the_release_only_at_zero(foucault, tmp_path, start, name):
+    mine = tmp_path / "mine.csv"
+    out = tmp_path / "mine.svg"
+    mine.write_text("t,x,y\n" + "".join(f"{t},{t * t},{t}\n" for t in range(start, start + 9)))
+    assert foucault("plot", mine, "--out", out)[0] == 0
+    names = {"release", "first row"}
+    assert names & set(texts_of(out)) == {name}
+
+
+@pytest.fixture
+def score():
+    """A program whose error is 1e-7 m or more after the release, where it has none."""
+    golden = reference.load("paris")
+    t, x, y = (golden[name][:50] for name in ("t", "x", "y"))
+    off = np.where(t > 0, 1e-7 + 1e-9 * t, 0.0)
+    return compare.judge({"t": t, "x": x + off, "y": y}, "paris")
+
+
+def test_the_axis_of_errors_begins_at_the_smallest_after_the_release(score, tmp_path):
+    path = tmp_path / "error.svg"
+    compare.plot(score).save(path)
+    ticks = [text for text in texts_of(path) if re.fullmatch("10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", text)]
+    assert ticks[0] == "10⁻⁷"
+
+
+def test_two_lines_that_coincide_are_both_seen(score, tmp_path):
+    path = tmp_path / "error.svg"
+    path.write_bytes(error_picture([score, score], path))
+    curves = re.findall(
+        rf"stroke: ({COLOURS[0]}|{COLOURS[1]}); stroke-width: ([\d.]+)", path.read_text()
+    )
+    below, above = [float(width) for _, width in curves]
+    assert below > 1.5 * above
 
 
 @pytest.mark.parametrize(

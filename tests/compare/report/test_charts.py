@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import xml.etree.ElementTree as ET
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,14 +14,19 @@ import pytest
 from compare.approximations import motions
 from compare.methods import METHODS
 from compare.methods.method import Family
-from compare.report import approximations, study_charts
+from compare.report import approximations, page, study_charts
 from compare.report.drawing import (
+    BLUE,
     COLOURS,
+    INKS,
     ChartLine,
     legend,
     line_style,
+    logarithmic,
+    name_beside,
     name_ends,
-    power_of_ten,
+    picture,
+    powers_of_ten,
     sheet,
 )
 from compare.report.motion import PicturedMotion
@@ -367,7 +374,50 @@ def test_names_at_ends_stand_on_the_side_away_from_the_middle():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(1e-9, "10⁻⁹"), (0.01, "0.01"), (1000, "1000"), (1e12, "10¹²")]
+    ("exponents", "texts"),
+    [
+        ([-2, 0, 3], ["0.01", "1", "1000"]),
+        ([-4, -2, 0], ["10⁻⁴", "10⁻²", "10⁰"]),
+        ([3, 12], ["10³", "10¹²"]),
+    ],
 )
-def test_ticks_are_plain_text(value, text):
-    assert power_of_ten(value) == text
+def test_ticks_of_one_axis_are_plain_text_in_one_style(exponents, texts):
+    assert powers_of_ten(exponents) == texts
+
+
+@pytest.mark.parametrize("heights", [[5e-1, 5.1e-1, 5.2e-1, 1e-9], [1e-12] * 4, [1.0] * 30])
+def test_names_beside_the_axes_do_not_lie_on_each_other_and_are_in_the_order_of_their_ends(heights):
+    lines = [
+        ChartLine(f"program {i}", [0, 1], [1e-3, y], line_style(COLOURS[i % 7], i))
+        for i, y in enumerate(heights)
+    ]
+    with sheet((8, 8)) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "y", 1e-12, 1.0)
+        name_beside(axes, lines)
+        figure.canvas.draw()
+        boxes = [one.get_window_extent() for one in axes.texts]
+        names = [one.get_text() for one in axes.texts]
+        frame = axes.get_window_extent()
+        page = figure.bbox
+    assert names == [line.name for line in sorted(lines, key=lambda line: line.y[-1])]
+    for below, above in itertools.pairwise(boxes):
+        assert not below.overlaps(above) and below.y0 < above.y0
+    for box in boxes:
+        assert frame.x1 < box.x0 and box.x1 <= page.x1
+        assert page.y0 <= box.y0 and box.y1 <= page.y1
+
+
+def test_a_picture_in_a_file_has_the_colours_of_a_dark_page_too():
+    css = (Path(page.__file__).parent / "page.css").read_text(encoding="utf-8")
+    dark = css[css.index("prefers-color-scheme: dark") :]
+    with sheet((3, 2)) as figure:
+        axes = figure.subplots()
+        axes.plot([0, 1], [0, 1], color=BLUE)
+        text = picture(figure, "svg").decode()
+    assert not re.search(r"fill: #ffffff|fill: white", text), "a ground that stays white"
+    for name, light in INKS.items():
+        on_dark = re.search(rf"--{name}: (#\w+)", dark)[1]
+        for use in ("fill", "stroke"):
+            assert f'[style*="{use}: {light}"] {{ {use}: {on_dark} !important }}' in text
+    ET.fromstring(text)
