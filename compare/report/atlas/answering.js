@@ -4,17 +4,22 @@
 const MOST_POINTS = 800; // of the picture of the errors
 const HEAD = 65536; // characters of a file that tell its columns
 
-// Times of xdot = 0 stand in a file that is called so, or has a column t and neither x nor y.
+// Whether a file holds times of xdot = 0: it is called so, or it has a column t and neither x nor y.
 function isOfTransits({ name, text }, words) {
   if (/transit/i.test(name)) return true;
-  try {
-    const head = text.slice(0, HEAD);
-    const { columns } = readColumns(text.length > HEAD ? head.slice(0, head.lastIndexOf("\n")) : text, ["t"], words);
-    return !("x" in columns) && !("y" in columns);
-  } catch (error) {
-    if (error instanceof Unreadable) return false;
-    throw error;
-  }
+  const head = text.slice(0, HEAD);
+  const lines = text.length > HEAD ? head.slice(0, head.lastIndexOf("\n")) : text;
+  const reads = (needed) => {
+    try {
+      readColumns(lines, needed, words);
+      return true;
+    } catch (error) {
+      if (error instanceof Unreadable) return false;
+      throw error;
+    }
+  };
+  const positions = [["t", "x", "y"], ["t", "x"], ["t", "y"]];
+  return reads(["t"]) && !positions.some(reads);
 }
 
 // Put the files of one drop together to a candidate.

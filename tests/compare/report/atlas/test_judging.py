@@ -16,7 +16,7 @@ from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
 from compare.diagnosis.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from compare.report.atlas.pages import source
-from compare.report.atlas.parts import golden_function, page_data, plain
+from compare.report.atlas.parts import golden_function, page_data, plain, vocabulary
 from reference import InputError
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -513,3 +513,33 @@ def test_clocks_and_ends_of_runs_are_taken_as_score_takes_them(golden, tmp_path)
     score = judge(path, "paris", transits=read_transits(transits), explain=False)
     assert extra["transits"]["extra"] == score.transits.extra == [t[-1]]
     assert extra["verdict"] == score.verdict == "disagrees" and right["verdict"] == "agrees"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "of_transits"),
+    [
+        ("mine.csv", "t,x,y\n0,0.3,0.4\n60,-0.1,-0.4\n", False),
+        ("mine.csv", "0,0.3,0.4\n60,-0.1,-0.4\n", False),
+        ("mine.csv", "t,x\n0,0.3\n60,-0.1\n", False),  # a trajectory that lacks y, and is told so
+        ("mine.csv", "t\n8.2\n16.4\n", True),
+        ("mine.csv", "t,k\n8.2,1\n16.4,2\n", True),
+        ("my_transits.csv", "t,x,y\n8.2,0.3,0.4\n16.4,-0.1,-0.4\n", True),
+    ],
+)
+def test_a_dropped_file_is_a_trajectory_if_it_has_positions_and_else_transits(
+    name, text, of_transits
+):
+    script = "".join(map(source, ("reading.js", "answering.js")))
+    script += """
+const { file, words } = JSON.parse(require("fs").readFileSync(0, "utf8"));
+console.log(isOfTransits(file, words));
+"""
+    document = {"file": {"name": name, "text": text}, "words": vocabulary()}
+    done = subprocess.run(
+        ["node", "-e", script],
+        input=json.dumps(document, default=plain),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == str(of_transits).lower()
