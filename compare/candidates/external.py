@@ -116,7 +116,7 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
         raise InputError("--run", command, "a command")
-    # where quotes are escaped, it is not known which words stand in quotes
+    # a command with escaped quotes cannot be split into quoted and unquoted words
     with contextlib.suppress(ValueError):
         for word in shlex.split(command, posix=False):
             if _FOR_A_SHELL.fullmatch(word):

@@ -342,7 +342,7 @@ def _place_of(
     needed: Sequence[str],
     where: str,
 ) -> int | None:
-    """Return the index of the word that means a column; None if there is none and it is not needed.
+    """Return the index of the word that names a column; None if an optional column has no word.
 
     Raises:
         InputError: two words mean it equally well, or it is missing.

@@ -101,7 +101,7 @@ def compare_passages(passages: Passages, scene: Scene, tolerance_m: float | None
     """Compare passages of a section with those of a scene.
 
     Raises:
-        InputError: none is in the scene's span.
+        InputError: no passage is within the scene's span.
     """
     with stoppable(_STOPPED), progress() as show:
         report = show(f"the truth of {scene.id}", float(scene.exact.t_end))

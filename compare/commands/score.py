@@ -69,7 +69,7 @@ def _how(language: str | None) -> None:
 
 @dataclass(frozen=True)
 class ScoreOptions:
-    """What a user typed after `foucault score`, and the scene or ranges that it names."""
+    """The options of `foucault score`, with the scene or the ranges that they name."""
 
     scene_word: Annotated[
         str | None,
@@ -242,7 +242,7 @@ class ScoreOptions:
         """The scene that SCENE names, with the values of --set, --t-end and --inputs.
 
         Raises:
-            InputError: none is named, it cannot be read, or a value does not fit.
+            InputError: no scene is named, it cannot be read, or a value is wrong.
         """
         if self.scene_word is None:
             raise InputError(
@@ -421,7 +421,7 @@ def _outcomes_of_scene(options: ScoreOptions, judging: Judging) -> list[Outcome]
     """Judge the files, the program and the approximation that are given for one scene.
 
     Raises:
-        InputError: none is given.
+        InputError: there is no candidate.
         FoucaultError: the only one cannot be judged, and no report has to say so.
     """
     outcomes = list(_outcomes(options, judging))
@@ -547,7 +547,7 @@ def _compare_passages(options: ScoreOptions, naming: Naming) -> None:
             "CANDIDATE",
             options.candidates[0],
             "no file beside that of --transits",
-            "Its passages stand in one file: "
+            "Put all passages into one file: "
             "`foucault score SCENE --transits FILE --section WORD`.",
         )
     scene = options.scene

@@ -159,7 +159,7 @@ def _scene(options: StudyOptions) -> Scene:
     """Return the scene of a study.
 
     Raises:
-        InputError: there is none, or a field of it that makes no difference was replaced.
+        InputError: the scene does not exist, or `--set` replaces a field that has no effect.
     """
     if options.approximations:
         unused = OF_APPROXIMATIONS

@@ -315,10 +315,10 @@ def _proved_at(times: _Times, ranges: Ranges, report: Report | None) -> Ranges:
 
 
 def _check_decided(times: _Times, decided: Sequence[Fraction], intervals: Sequence[_Zero]) -> None:
-    """Refuse passages alone of which none is in the scene's span, or none is decided by the proof.
+    """Refuse a file of passages if none of them is within the scene's span, or decided by the proof.
 
     Raises:
-        InputError: they are such.
+        InputError: no passage can be compared.
     """
     if times.rows_in_span or decided:
         return
