@@ -24,7 +24,7 @@ from ..numbers.precision import log2
 from ..numbers.taylor_step import TaylorStep
 from ..numbers.zeros import XDOT
 from .frames import ColumnSource
-from .trusted.audit import Audit, WrongSumsError
+from .trusted.audit import SumsAudit, WrongSumsError
 from .trusted.course import Course
 from .trusted.shapes import Proved, ProvedFunction, State
 from .trusted.system import SceneBalls
@@ -166,7 +166,7 @@ def _attempt(request: _Request, plan: ProofPlan, approximant: Approximant) -> En
     first = next(steps, None)
     if first is None:
         raise UnreachableError("enclosure: the approximant is empty.")
-    attempt = _Attempt(request, plan, first)
+    attempt = _PointAttempt(request, plan, first)
     all_steps: Iterable[TaylorStep] = chain([first], steps)
     if request.function:
         from .fit import on_doubles
@@ -178,7 +178,7 @@ def _attempt(request: _Request, plan: ProofPlan, approximant: Approximant) -> En
     return attempt.finish()
 
 
-class _Attempt:
+class _PointAttempt:
     """One attempt at one precision: the course, and what proposes columns and series to it."""
 
     def __init__(self, request: _Request, plan: ProofPlan, first: TaylorStep) -> None:
@@ -186,7 +186,7 @@ class _Attempt:
         self.method = plan.method
         self.bits = first.bits
         self.order = len(first.coefficients[0]) - 1
-        self.audit = Audit() if request.audit else None
+        self.audit = SumsAudit() if request.audit else None
         self.audit_s = 0.0
         balls = SceneBalls(request.inputs, first.bits + SCENE_GUARD_BITS, self.audit)
         by_columns = plan.method == "columns"
@@ -246,7 +246,7 @@ class _Attempt:
             function=function,
         )
 
-    def _check_sums(self, audit: Audit) -> None:
+    def _check_sums(self, audit: SumsAudit) -> None:
         """Check what compiled code returned since the last time.
 
         Raises:

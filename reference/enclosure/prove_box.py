@@ -62,7 +62,7 @@ def enclose_box(
     Raises:
         UnreachableError: the box is too wide; says up to which time it holds.
     """
-    attempt: _Attempt | None = None
+    attempt: _BoxAttempt | None = None
     begun = process_time()
     try:
         balls = BoxBalls(box, LOOK_BITS)
@@ -72,7 +72,7 @@ def enclose_box(
         windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, zeros)
         latest = windows.course.times[-1]
         grows = float(latest) * _growth_rate(balls) > GROWTH
-        attempt = _Attempt(windows, halves if derivatives or grows else None)
+        attempt = _BoxAttempt(windows, halves if derivatives or grows else None)
         attempt.cpu_s = process_time() - begun
         for step in until(approximant(bits, latest), latest):
             attempt.advance(step)
@@ -100,7 +100,7 @@ def enclose_box(
     )
 
 
-class _Attempt:
+class _BoxAttempt:
     """The course of a box, and what proposes derivatives to it; without `halves` there are none."""
 
     def __init__(self, windows: Windows, halves: dict[str, Fraction] | None) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from ..numbers.taylor_step import TaylorStep
 from .frames import ORDER, ColumnSource, hats
 from .trusted.box import BoxBalls
-from .trusted.derivatives import Sensitivity
+from .trusted.derivatives import InputSensitivity
 
 FINE = 50  # bits of a coefficient beyond the largest
 
@@ -21,7 +21,7 @@ def scales_of(balls: BoxBalls, names: list[str]) -> dict[str, int]:
     w0 = float(balls.w0)
     scales = {}
     for name in names:
-        sensitivity = Sensitivity(balls, name, Fraction(0), 0)
+        sensitivity = InputSensitivity(balls, name, Fraction(0), 0)
         lengths = sensitivity.end.rho
         rates = [*sensitivity.end.chi, *sensitivity.omega_q, sensitivity.drag_q]
         sizes = [abs(float(x.mid())) for x in (*lengths, *(x / w0 for x in rates))]
@@ -33,7 +33,7 @@ def scales_of(balls: BoxBalls, names: list[str]) -> dict[str, int]:
 class TangentSource:
     """Proposes six polynomials a step for each input: the linearised flow, with the input's forces."""
 
-    def __init__(self, balls: BoxBalls, sensitivities: list[Sensitivity]) -> None:
+    def __init__(self, balls: BoxBalls, sensitivities: list[InputSensitivity]) -> None:
         """Read Ω_q, γ_q and the derivatives at the release as floats."""
         self.columns = ColumnSource(balls)
         self.drag = float(balls.drag_0)

@@ -117,7 +117,7 @@ def sources_hold(module):
         )
         sensitivity = SimpleNamespace(omega_q=balls(turn), drag_q=arb(float(slow)), epsilon=arb(0))
         parts = [size(P), size(Q), 0.1, 0.2, abs(p @ P), abs(K @ P + p @ Q)]
-        norms = module.Norms(*balls(parts))
+        norms = module.ResidualNorms(*balls(parts))
         assumed = module.Distance(arb(float(size(e))), arb(float(size(g))))
         step = module.box_step(piece, balls(W0), arb(float(size(p))))
         bounds = module.carried(step, sensitivity, norms, assumed)

@@ -35,7 +35,7 @@ class WrongSumsError(Exception):
     """Compiled code returned digits or sums that are wrong."""
 
 
-class Audit:
+class SumsAudit:
     """Takes what compiled code returned for each step of a proof, and checks it afterwards."""
 
     def __init__(self) -> None:
@@ -58,14 +58,14 @@ class Audit:
         self.waiting = []
         self.bytes = 0
         for _, steps in groupby(waiting, key=_shapes):
-            _check(Steps(list(steps)))
+            _check(AuditedSteps(list(steps)))
 
 
 def _shapes(step: CompiledSums) -> Any:
     return step.rows.shape, step.digits.shape, step.absolute.shape, step.product_rows
 
 
-class Steps:
+class AuditedSteps:
     """Steps of the same shape, as arrays whose first axis counts the steps."""
 
     def __init__(self, steps: list[CompiledSums]) -> None:
@@ -78,7 +78,7 @@ class Steps:
         _, self.rows, _, self.columns = self.digits.shape
 
 
-def _check(steps: Steps) -> None:
+def _check(steps: AuditedSteps) -> None:
     """Raise WrongSumsError unless digits and sums of all steps are right."""
     top = steps.digits[:, 0]
     below = steps.digits[:, 1:]
@@ -105,7 +105,7 @@ def _check(steps: Steps) -> None:
         _demand(np.array_equal(_summed(steps.absolute % q, weights, q), expected))
 
 
-def _polynomials(steps: Steps, powers: Any, weights: Any, q: int) -> Any:
+def _polynomials(steps: AuditedSteps, powers: Any, weights: Any, q: int) -> Any:
     """Return d, τ and p' at a point modulo q, without the rows that products leave out: (steps, 7).
 
     d = p'' + 2 Ω × p' + Ω × (Ω × p) + γ p' − c + λ p, where Ω × p = ω (−m, x, 0); τ = |p|² − 1.

@@ -7,7 +7,7 @@ the rod, so that all of this has the unit 1. Norms are those on |s| <= 1.
 |--------------------|--------------------------------------------------------|------|
 | `p`, `v`           | p, p': components x, m, w, integers over `unit` = 2^B  | 1    |
 | `tension`          | λ, likewise                                            | 1    |
-| `Norms`            | |d_x|, |d_m|, |d_w|, |τ|, |p'_x|, |p'_m|, |p'_w|, |τ'| | 1    |
+| `DefectNorms`      | |d_x|, |d_m|, |d_w|, |τ|, |p'_x|, |p'_m|, |p'_w|, |τ'| | 1    |
 | `P`, `K`, `T`      | P, K, T: bounds of |p|, |K|, |τ|                       | 1    |
 | `V`, `V_rate`      | bounds of |V|, |V'|                                    | 1    |
 | `p_rate`, `T_rate` | bounds of |p'|, |τ'|                                   | 1    |
@@ -29,7 +29,7 @@ from .shapes import Sizes
 from .system import SceneBalls, scaled
 
 
-class Norms(NamedTuple):
+class DefectNorms(NamedTuple):
     """Bounds on |s| <= 1 of the components of d, of τ, of the components of p', of τ'."""
 
     d_x: arb
@@ -107,14 +107,14 @@ class Piece:
             return Sizes(upper(D1), upper(D2), P, upper(K), upper(T), upper(d1_rate))
 
     @cached_property
-    def norms(self) -> Norms:
+    def norms(self) -> DefectNorms:
         """The norms of d, τ, p' and τ': by sums of digits, or of others by FLINT's polynomials."""
         if isinstance(self.rows, Digits):
             from .digits import norms
 
             bounds = norms(self.rows.table, self.constants.integers, audit=self.balls.audit)
-            return Norms(*bounds)
-        return Norms(*(total(f, 2 * self.step.bits) for f in self._exact_polynomials()))
+            return DefectNorms(*bounds)
+        return DefectNorms(*(total(f, 2 * self.step.bits) for f in self._exact_polynomials()))
 
     def _exact_polynomials(self) -> list[fmpz_poly]:
         """Return d (three components), τ, p' (three components), τ' over 2^(2 bits), with the integers for constants.

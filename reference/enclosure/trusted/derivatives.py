@@ -79,7 +79,7 @@ class Proposed(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Candidate:
+class TangentCandidate:
     """P and Q of a step as they are proposed: integers over `unit`, and so exact."""
 
     P: list[fmpz_poly]
@@ -99,13 +99,13 @@ class Candidate:
         return Proposed(P, Q)
 
 
-def candidate_of(rows: list[list[int]], bits: int) -> Candidate:
+def candidate_of(rows: list[list[int]], bits: int) -> TangentCandidate:
     """Return a proposal: six rows of integers over 2^bits, read once."""
     polynomials = [fmpz_poly(row) for row in rows]
-    return Candidate(polynomials[:3], polynomials[3:], fmpz(1) << bits)
+    return TangentCandidate(polynomials[:3], polynomials[3:], fmpz(1) << bits)
 
 
-class Sensitivity:
+class InputSensitivity:
     """How the motion depends on one input: what drives its derivative, and the radius of this.
 
     `varied` has length, pace, axes, Ω, γ and release as series in x, whose first coefficients are
@@ -128,7 +128,7 @@ class Sensitivity:
             self.omega_q = [derivative_of(x) for x in omega]
             self.drag_q = derivative_of(self.varied.drag)
 
-    def join(self, candidate: Candidate, piece: Piece) -> None:
+    def join(self, candidate: TangentCandidate, piece: Piece) -> None:
         """Add to ε by how much the proposals of a step do not join those of the one before."""
         h = piece.constants.h
         start = candidate.at(piece.step.low, h)
@@ -155,7 +155,7 @@ class SceneMotion:
 
 
 @dataclass(frozen=True)
-class Norms:
+class ResidualNorms:
     """Sup norms on a step; `off_sphere` is that of p·P, `off_momentum` that of K₀·P + p·Q."""
 
     P: arb
@@ -220,8 +220,8 @@ def scene_motion(piece: Piece, omega_0: Vector) -> SceneMotion:
 
 
 def residuals(
-    constants: Scaled, scene: SceneMotion, sensitivity: Sensitivity, proposed: Proposed
-) -> Norms:
+    constants: Scaled, scene: SceneMotion, sensitivity: InputSensitivity, proposed: Proposed
+) -> ResidualNorms:
     """Return the norms of P and Q, of their residuals in (12.1a, b), and of (12.1c) of p, K₀, P, Q.
 
     Args:
@@ -253,7 +253,7 @@ def residuals(
     if not drag_q.is_zero():
         R2 = add(R2, times(drag_q, add(K_less_omega, times(dot(omega_0, p), p))))
 
-    return Norms(
+    return ResidualNorms(
         P=sup_norm(P),
         Q=sup_norm(Q),
         R1=sup_norm(R1),
@@ -277,7 +277,9 @@ def box_step(piece: Piece, omega_0: Vector, p_size: arb) -> BoxStep:
     )
 
 
-def carried(step: BoxStep, sensitivity: Sensitivity, norms: Norms, assumed: Distance) -> Carried:
+def carried(
+    step: BoxStep, sensitivity: InputSensitivity, norms: ResidualNorms, assumed: Distance
+) -> Carried:
     """Return the bounds of Lemma 12.2, where all of the box is as near to p and K₀ as is assumed."""
     constants = step.constants
     c = constants.c_size
@@ -343,7 +345,7 @@ class Tangents:
         # Lemma 12.4 takes a box that is symmetric about the scene
         demand(ends == [balls.claim.low, balls.claim.high], "a width is missing, or another one")
         self.sensitivities = [
-            Sensitivity(balls, name, half_width, scales[name])
+            InputSensitivity(balls, name, half_width, scales[name])
             for name, half_width in half_widths.items()
         ]
         self.eta = arb(0)
@@ -415,7 +417,7 @@ class Tangents:
         return Distance(eta_0, (w + K) * eta_0)  # (12.4g)
 
     def confirmed(
-        self, step: BoxStep, norms: list[Norms], of_scene: Distance, theorem_c: Distance
+        self, step: BoxStep, norms: list[ResidualNorms], of_scene: Distance, theorem_c: Distance
     ) -> Reached:
         """Return the bounds of Lemma 12.4, with E and G twice what follows from none.
 
@@ -433,7 +435,7 @@ class Tangents:
         return reached
 
     def reached(
-        self, step: BoxStep, norms: list[Norms], assumed: Distance, of_scene: Distance
+        self, step: BoxStep, norms: list[ResidualNorms], assumed: Distance, of_scene: Distance
     ) -> Reached:
         """Return E₁ and G₁ of Lemma 12.4, and the bounds they are made of, from E and G."""
         r = of_scene.r
@@ -519,7 +521,7 @@ def horizontal(vector: Vector, c: Vector) -> Horizontal:
 
 
 def state_derivative(
-    motion: MotionBalls, variation: VariationBalls, sensitivity: Sensitivity, time: arb
+    motion: MotionBalls, variation: VariationBalls, sensitivity: InputSensitivity, time: arb
 ) -> Vector:
     """Return balls of the derivatives of position and velocity, in m and m/s per unit of the input.
 
@@ -549,7 +551,7 @@ def zero_derivative(
     covered: Covered,
     motion: MotionBalls,
     variation: VariationBalls,
-    sensitivity: Sensitivity,
+    sensitivity: InputSensitivity,
     s: arb,
     apsis: bool,
 ) -> ZeroDerivative:
@@ -607,7 +609,9 @@ class WatchedZeros:
         self.kept = list[CoveredStep]()
         self.derivatives = list[list[ZeroDerivative]]()
 
-    def advance(self, step: CoveredStep, scene: Covered, sensitivities: list[Sensitivity]) -> None:
+    def advance(
+        self, step: CoveredStep, scene: Covered, sensitivities: list[InputSensitivity]
+    ) -> None:
         """Take the next step."""
         self.kept.append(step)
         self.take_closed(sensitivities)
@@ -615,13 +619,15 @@ class WatchedZeros:
         if not self.scan.cluster:
             self.kept = []
 
-    def take_closed(self, sensitivities: list[Sensitivity]) -> None:
+    def take_closed(self, sensitivities: list[InputSensitivity]) -> None:
         """Take the derivatives of the zeros that were closed since the last call."""
         for zero in self.scan.found[len(self.derivatives) :]:
             derivatives = self.of_zero(zero, sensitivities) if zero.parity == "one" else []
             self.derivatives.append(derivatives if all_finite(derivatives) else [])
 
-    def of_zero(self, zero: EnclosedZero, sensitivities: list[Sensitivity]) -> list[ZeroDerivative]:
+    def of_zero(
+        self, zero: EnclosedZero, sensitivities: list[InputSensitivity]
+    ) -> list[ZeroDerivative]:
         """Return the derivatives of a zero to each input, over all times that it may have."""
         begin = self.kept[0].covered.piece.begin
         end = self.kept[-1].covered.piece.end
@@ -636,7 +642,7 @@ class WatchedZeros:
         return [hull_of_zeros(of_input) for of_input in zip(*at_places, strict=True)]
 
     def at_place(
-        self, step: CoveredStep, s: arb, sensitivities: list[Sensitivity]
+        self, step: CoveredStep, s: arb, sensitivities: list[InputSensitivity]
     ) -> list[ZeroDerivative]:
         """Return the derivatives of a zero that lies in the ball `s` of a step, to each input."""
         covered = step.covered
@@ -850,7 +856,7 @@ def intervals(balls: Vector) -> tuple[Interval, ...]:
 def within(
     wide: Interval,
     own: Interval,
-    sensitivities: list[Sensitivity],
+    sensitivities: list[InputSensitivity],
     derivatives: Sequence[arb],
 ) -> Interval:
     """Return where a number is for all inputs: in `wide`, and near the scene's own (Lemma 12.4)."""

@@ -36,12 +36,12 @@ FACTOR_BITS = 31  # of a factor of λ p and of the squares, without its sign
 X, M, W, TENSION, X_RATE, M_RATE, W_RATE, ONE = range(8)
 # rows of the constants: those of `Integers`, and the 1
 OMEGA, OMEGA_SQUARED, DRAG, C_M, C_W, UNIT = range(6)
-# rows of the results, in the order of `Norms`
+# rows of the results, in the order of `DefectNorms`
 D_X, D_M, D_W, TAU, P_RATE_X, P_RATE_M, P_RATE_W, TAU_RATE = range(8)
 RESULTS = 7  # that are sums of products; τ' comes from τ
 
 
-class Term(NamedTuple):
+class LinearTerm(NamedTuple):
     """A small integer times a constant times a series, which is added to a result."""
 
     result: int
@@ -52,19 +52,19 @@ class Term(NamedTuple):
 
 # d = λ p + p'' + 2 Ω × p' + Ω × (Ω × p) + γ p' − c without λ p and p'', τ = |p|² − 1 without |p|², and p' (section 6)
 LINEAR = (
-    Term(D_X, -1, OMEGA_SQUARED, X),
-    Term(D_M, -1, OMEGA_SQUARED, M),
-    Term(D_X, -2, OMEGA, M_RATE),
-    Term(D_M, 2, OMEGA, X_RATE),
-    Term(D_X, 1, DRAG, X_RATE),
-    Term(D_M, 1, DRAG, M_RATE),
-    Term(D_W, 1, DRAG, W_RATE),
-    Term(D_M, -1, C_M, ONE),
-    Term(D_W, -1, C_W, ONE),
-    Term(TAU, -1, UNIT, ONE),
-    Term(P_RATE_X, 1, UNIT, X_RATE),
-    Term(P_RATE_M, 1, UNIT, M_RATE),
-    Term(P_RATE_W, 1, UNIT, W_RATE),
+    LinearTerm(D_X, -1, OMEGA_SQUARED, X),
+    LinearTerm(D_M, -1, OMEGA_SQUARED, M),
+    LinearTerm(D_X, -2, OMEGA, M_RATE),
+    LinearTerm(D_M, 2, OMEGA, X_RATE),
+    LinearTerm(D_X, 1, DRAG, X_RATE),
+    LinearTerm(D_M, 1, DRAG, M_RATE),
+    LinearTerm(D_W, 1, DRAG, W_RATE),
+    LinearTerm(D_M, -1, C_M, ONE),
+    LinearTerm(D_W, -1, C_W, ONE),
+    LinearTerm(TAU, -1, UNIT, ONE),
+    LinearTerm(P_RATE_X, 1, UNIT, X_RATE),
+    LinearTerm(P_RATE_M, 1, UNIT, M_RATE),
+    LinearTerm(P_RATE_W, 1, UNIT, W_RATE),
 )
 
 
@@ -175,7 +175,7 @@ def norms(rows: Any, integers: Any, more: int = 1, audit: Any = None) -> list[ar
         rows: digits of x, m, w, λ, shape (4, L, orders).
         integers: ω, ω², γ, c_m, c_w over 2^(22 L - 1).
         more: rows of a product that are summed beyond L; what is left out is bounded, with L - 1 it is nothing.
-        audit: an `Audit`, which takes what compiled code returned.
+        audit: a `SumsAudit`, which takes what compiled code returned.
     """
     _, count, orders = rows.shape
     constants = split(count, *integers, fmpz(1) << DIGIT_BITS * count - 1)

@@ -39,7 +39,7 @@ HALF = (1 + arb(2) ** -20) * arb(2) ** -53
 TINY = arb(2) ** -1000  # and this, where numbers are too small to have 53 bits
 
 
-class Bounds(NamedTuple):
+class ComponentBounds(NamedTuple):
     """Of a component: bounds of the error of its value, of this, of the error of its rate, of this."""
 
     error: arb
@@ -60,7 +60,7 @@ class FunctionPiece:
     """A piece of a golden function.
 
     `until` is its end, a double, and `series` an array of doubles: CUT of each component. `of_proof`
-    has a row for each component: the `Bounds` of (10.1a, b), before anything is evaluated.
+    has a row for each component: the `ComponentBounds` of (10.1a, b), before anything is evaluated.
     """
 
     until: Any
@@ -104,7 +104,7 @@ def variable_error(begin: Fraction, end: Fraction) -> int:
 
 @lru_cache
 def weights(degree: int, lam: int) -> arb_mat:
-    """Return what |c_k| adds to the four `Bounds`, in a row for each k, rates over 2/(b - a).
+    """Return what |c_k| adds to the four `ComponentBounds`, in a row for each k, rates over 2/(b - a).
 
     Coefficients up to `degree` are evaluated; the others are left out, and so are all with -1.
     """
@@ -120,7 +120,7 @@ def weights(degree: int, lam: int) -> arb_mat:
 
 
 def costs(series: Any, weight: arb_mat, duration: Fraction) -> arb_mat:
-    """Return `Bounds` of sums of |c_k| with weights, in a row for each component."""
+    """Return `ComponentBounds` of sums of |c_k| with weights, in a row for each component."""
     sizes = arb_mat(len(series) // CUT, CUT, [abs(c) for c in series])
     rate = ball(2 / duration)
     to_rates = arb_mat(4, 4, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, rate, 0, 0, 0, 0, rate])
@@ -210,7 +210,7 @@ class Following:
     def _bounds(self, degree: int, L: Any) -> dict[str, Fraction]:
         """Return how far values in doubles are from the truth at most, at any time, by name."""
         with ctx.workprec(SHORT):
-            largest = [Bounds(TINY, TINY, TINY, TINY)] * self.count
+            largest = [ComponentBounds(TINY, TINY, TINY, TINY)] * self.count
             for piece in self.pieces:
                 evaluated = costs(piece.series, weights(degree, piece.lam), piece.duration)
                 rows = bounds_of(piece.of_proof + evaluated)
@@ -235,18 +235,18 @@ class Following:
         return b"".join(data)
 
 
-def bounds_of(matrix: arb_mat) -> list[Bounds]:
+def bounds_of(matrix: arb_mat) -> list[ComponentBounds]:
     """Return the rows of a matrix with four columns as bounds."""
     entries = matrix.entries()
-    return [Bounds(*entries[i : i + 4]) for i in range(0, len(entries), 4)]
+    return [ComponentBounds(*entries[i : i + 4]) for i in range(0, len(entries), 4)]
 
 
-def larger(a: Bounds, b: Bounds) -> Bounds:
+def larger(a: ComponentBounds, b: ComponentBounds) -> ComponentBounds:
     """Return the larger of two bounds each, the second one with what tiny numbers lose."""
-    return Bounds(*(x.max(y + TINY) for x, y in zip(a, b, strict=True)))
+    return ComponentBounds(*(x.max(y + TINY) for x, y in zip(a, b, strict=True)))
 
 
-def on_sphere(balls: SceneBalls, L: arb, x: Bounds, y: Bounds) -> ErrorsOfZ:
+def on_sphere(balls: SceneBalls, L: arb, x: ComponentBounds, y: ComponentBounds) -> ErrorsOfZ:
     """Return bounds of the errors of z = -√(L - (x² + y²)) and vz = -(x vx + y vy)/z in doubles.
 
     Where (10.4b) fails they are not finite (Lemma 10.4).

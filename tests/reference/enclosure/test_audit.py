@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("numba")
 
 import reference
-from reference.enclosure.trusted.audit import Audit, WrongSumsError
+from reference.enclosure.trusted.audit import SumsAudit, WrongSumsError
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.digits import LINEAR, ONE, UNIT
 from reference.enclosure.trusted.shapes import CompiledSums
@@ -39,7 +39,7 @@ def compiled(name: str, count: int) -> list[CompiledSums]:
     """What compiled code returns for the first steps of a scene."""
     scene = reference.load_scene(name, ["run.t_end=20000", "run.grid_step=20000"])
     bits = SCENES[name]
-    audit = Audit()
+    audit = SumsAudit()
     balls = SceneBalls(scene.exact, bits + 64, audit)
     feed = Feed(scene.exact, tuple(scene.exact.grid), "limbs")
     for step in islice(feed(bits), count):
@@ -273,7 +273,7 @@ def faulty(seed: int) -> tuple[str, list[CompiledSums]]:
 
 
 def passes(steps: list[CompiledSums]) -> bool:
-    audit = Audit()
+    audit = SumsAudit()
     for step in steps:
         audit.take(step)
     try:
@@ -303,7 +303,7 @@ def test_the_faults_start_from_what_compiled_code_returned(name):
 
 
 def test_a_check_leaves_nothing_for_the_next_one():
-    audit = Audit()
+    audit = SumsAudit()
     _, steps = faulty(0)
     for step in steps:
         audit.take(step)

@@ -11,7 +11,7 @@ from flint import fmpz_poly
 
 pytest.importorskip("numba")
 
-from reference.enclosure.trusted.audit import Audit
+from reference.enclosure.trusted.audit import SumsAudit
 from reference.enclosure.trusted.defect import Piece, polynomials
 from reference.enclosure.trusted.digits import check, norms, split
 from reference.enclosure.trusted.system import SceneBalls
@@ -58,7 +58,7 @@ def test_all_rows_give_the_integers_of_flint_and_fewer_a_bound(seed):
     # coefficients that do not come as digits are FLINT's alone
     by_flint = Piece(balls, piece.step._replace(rows=tuple(Digits(rows)))).norms
 
-    audit = Audit()
+    audit = SumsAudit()
     _, count, _ = rows.shape
     all_rows = norms(rows, piece.constants.integers, count - 1, audit)
     fewer_rows = norms(rows, piece.constants.integers, audit=audit)

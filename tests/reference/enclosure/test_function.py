@@ -25,7 +25,7 @@ from reference.enclosure.fit import FunctionFit, on_doubles
 from reference.enclosure.trusted.course import Course
 from reference.enclosure.trusted.function import (
     CUT,
-    Bounds,
+    ComponentBounds,
     Following,
     basis,
     check_function,
@@ -397,8 +397,8 @@ def test_z_from_the_sphere_is_within_its_bound():
         turn, way = rng.uniform(0, 2 * np.pi, 2)
         x, y = (Fraction(float(wide * f(turn))) for f in (np.cos, np.sin))
         vx, vy = (Fraction(float(fast * f(way))) for f in (np.cos, np.sin))
-        x_bounds = Bounds(*map(arb, (d, abs(float(x)), e, abs(float(vx)))))
-        y_bounds = Bounds(*map(arb, (d, abs(float(y)), e, abs(float(vy)))))
+        x_bounds = ComponentBounds(*map(arb, (d, abs(float(x)), e, abs(float(vx)))))
+        y_bounds = ComponentBounds(*map(arb, (d, abs(float(y)), e, abs(float(vy)))))
         z_bound, vz_bound = on_sphere(balls, arb(square), x_bounds, y_bounds)
         X, Y, VX, VY = (
             float(q) + s * rng.choice([-1, 1, 0.3]) * 0.999
