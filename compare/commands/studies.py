@@ -232,6 +232,7 @@ def stability(options: StabilityOptions) -> None:
     """
     refuse_conflicts(options, STABILITY_CONFLICTS)
     from ..report.stability_page import REPORT, document_of
+    from ..studies.campaign import Reports
     from ..studies.long_runs import long_runs
     from ..studies.stability import stability as measured
     from ..studies.study_plan import declared
@@ -250,16 +251,15 @@ def stability(options: StabilityOptions) -> None:
             programs=programs,
             limit_s=options.limit,
             journal_path=options.out and options.out / "cells.jsonl",
-            solving=show("the truth", unit="scenes"),
-            report=show("stability", unit="runs"),
+            reports=Reports(show("the truth", unit="scenes"), show("stability", unit="runs")),
         )
         runs = []
         if items:
+            days = show("the truth over 30 days", unit="days")
             runs = long_runs(
                 items,
                 journal_path=options.out and options.out / "long.jsonl",
-                solving=show("the truth over 30 days", unit="days"),
-                report=show("30 days", unit="runs"),
+                reports=Reports(days, show("30 days", unit="runs")),
             )
     document = document_of(cells, runs, programs)
     finish(document, REPORT.text, REPORT.write(document, options.out), options.as_json)

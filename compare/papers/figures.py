@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -77,10 +77,10 @@ def _triangle() -> list[Panel]:
     for name, begin, stop, colour, dashes in sides:
         x, y = np.linspace(begin, stop, 9).T
         lines.append(line("", x, y, colour, dashes, 1.8))
-        names.append(dots(name, x[4:5], y[4:5] - 0.05, colour, size=0))
+        names.append(dots(name, x[4:5], y[4:5] - 0.05, colour, NAME_ONLY))
     angles = [
-        dots("φ", [-0.003], [-0.32], FAINT, size=0),
-        dots("ϕ", [-0.03], [-0.8], FAINT, size=0),
+        dots("φ", [-0.003], [-0.32], FAINT, NAME_ONLY),
+        dots("ϕ", [-0.03], [-0.8], FAINT, NAME_ONLY),
     ]
     ends = {"aspect": "equal", "xlim": (-0.8, 0.8), "ylim": (-1.05, 0.4)}
     return [Panel([*lines, *names, *angles], ends, bare=True)]
@@ -118,7 +118,7 @@ def _from_above_and_south() -> list[Panel]:
         _, states = window(begin, 17)
         above.append(line(f"from {begin} s", states[:, 0], states[:, 1], colour, dashes))
         south.append(line("", states[:, 0], 1000 * (states[:, 2] + 67), colour, dashes))
-    above.append(dots("rest", rest[:1], rest[1:2], BLACK, "P", 6))
+    above.append(dots("rest", rest[:1], rest[1:2], BLACK, Marker("P", 6)))
     north = {
         "title": "From above",
         "ylabel": "y (north) in m",
@@ -189,7 +189,7 @@ def _frequency_by_latitude() -> list[Panel]:
     latitudes, measured = np.linspace(-90, 90, 61), frequencies()
     lines = [
         line("estimate", latitudes, [estimate_at(float(d)) for d in latitudes], RED, width=1),
-        dots("runs", list(measured), list(measured.values()), BLUE, "o", 4),
+        dots("runs", list(measured), list(measured.values()), BLUE, Marker("o", 4)),
     ]
     return [Panel(lines, EAST_WEST | {"ylabel": "frequency in Hz", "xlim": (-93, 93)}, named=True)]
 
@@ -200,9 +200,9 @@ def _three_orders() -> list[Panel]:
     for (name, states), colour, mark in zip(
         orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osX", strict=True
     ):
-        above.append(dots("", times, states[:, 0], colour, mark, 5))
+        above.append(dots("", times, states[:, 0], colour, Marker(mark, 5)))
         gap = np.linalg.norm(states.T[:3] - truth.T[:3], axis=0)
-        below.append(dots(FIXED_STEP[name], times, gap, colour, mark, 5, "-"))
+        below.append(dots(FIXED_STEP[name], times, gap, colour, Marker(mark, 5), "-"))
     return [
         Panel(above, LATE | {"ylabel": "x in m"}, height=1.9),
         Panel(
@@ -282,13 +282,26 @@ def line(
     return ChartLine(name, list(map(float, x)), list(map(float, y)), style)
 
 
+class Marker(NamedTuple):
+    """A marker of matplotlib and its size in points; a size of 0 shows the name alone."""
+
+    shape: str
+    size: float
+
+
+DOT = Marker(".", 2)
+NAME_ONLY = Marker(".", 0)
+
+
 def dots(
-    name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none"
+    name: str, x: Any, y: Any, colour: str, marker: Marker = DOT, dashes: Any = "none"
 ) -> ChartLine:
     """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
-    joined, faint = line(name, x, y, colour, dashes, 0.7), mark == "."
-    style = {"marker": mark, "markersize": size} | ({} if faint else {"markerfacecolor": "none"})
-    return replace(joined, style={**joined.style, **style}, markers=FAINT_DOTS if faint else 1.0)
+    joined = line(name, x, y, colour, dashes, 0.7)
+    style = {**joined.style, "marker": marker.shape, "markersize": marker.size}
+    if marker.shape == DOT.shape:
+        return replace(joined, style=style, markers=FAINT_DOTS)
+    return replace(joined, style={**style, "markerfacecolor": "none"}, markers=1.0)
 
 
 def svg(number: int) -> str:

@@ -52,6 +52,22 @@ Counted = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True)
+class Reports:
+    """What a study calls while it works.
+
+    Attributes:
+        solving: called while the truth is solved for, with what is solved (scenes, or days of one) and all of it.
+        measuring: called with the number of finished measurements, of all of them, and what runs now.
+    """
+
+    solving: Callable[[float, float], None] | None = None
+    measuring: Counted | None = None
+
+
+UNREPORTED = Reports()
+
+
+@dataclass(frozen=True)
 class Measurement(ABC, Generic[Item, Result]):
     """The measurement that a campaign repeats; it is sent to the child processes by pickle.
 

@@ -6,7 +6,7 @@ the frequency has a constant error.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
@@ -22,7 +22,7 @@ from ..methods.method import available
 from ..methods.rhs.problem import Problem
 from ..observed.least_squares import power_of_time
 from ..truth import Progress, golden_of
-from .campaign import Counted, campaign
+from .campaign import UNREPORTED, Reports, campaign
 from .measure import OnScene, timed
 from .row import FAILURES, failure
 from .study_plan import Item
@@ -91,8 +91,7 @@ def long_runs(
     scene: Scene | None = None,
     *,
     journal_path: Path | None = None,
-    solving: Callable[[float, float], None] | None = None,
-    report: Counted | None = None,
+    reports: Reports = UNREPORTED,
 ) -> list[LongRun]:
     """Measure the errors of methods over a long run, and solve for the truth if needed.
 
@@ -100,11 +99,11 @@ def long_runs(
         items: method, formulation and setting of each run; `declared(methods, "long_runs")` lists them.
         scene: its inputs read as binary64; Paris over 30 days if None.
         journal_path: a file to which results are appended, and whose results are not measured again.
-        solving: called with the simulated days reached, and all days, while the truth is solved for.
-        report: called with the number of finished runs, of all runs, and the method that runs now.
+        reports: of the simulated days while the truth is solved for, and of the runs.
     """
     scene = scene or load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
     days = float(scene.exact.t_end) / DAY_S
+    solving = reports.solving
     golden = golden_of(
         scene,
         TRUTH_DIGITS,
@@ -114,7 +113,7 @@ def long_runs(
     )
     recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
     runs = _LongRuns(recipe, PATIENCE_S, {}, scene, golden.path)
-    return campaign(runs, items, journal_path=journal_path, report=report)
+    return campaign(runs, items, journal_path=journal_path, report=reports.measuring)
 
 
 @dataclass(frozen=True)

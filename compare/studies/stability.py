@@ -25,7 +25,7 @@ from ..candidates.external import STEPS
 from ..methods import METHODS
 from ..truth import Progress, golden_of
 from . import users_program
-from .campaign import Counted, Measurement, campaign
+from .campaign import UNREPORTED, Measurement, Reports, campaign
 from .character import Character, character, reason_of
 from .measure import Bench
 from .row import GridTruth, Row
@@ -41,8 +41,21 @@ _EXACT = 40.0  # digits of a run without any error
 
 # method or program, formulation and setting as the method declares them, and the scene
 Item = tuple[str, str | None, float, str]
-# each scene, the folder of its golden dataset, its difficulty
-Problems = dict[str, tuple[Scene, Path, Character]]
+
+
+@dataclass(frozen=True)
+class SolvedScene:
+    """A scene of the study with its truth.
+
+    Attributes:
+        scene: as it is run.
+        golden_path: folder of its golden dataset.
+        character: what makes it hard.
+    """
+
+    scene: Scene
+    golden_path: Path
+    character: Character
 
 
 @dataclass(frozen=True)
@@ -105,8 +118,7 @@ def stability(
     programs: Mapping[str, str] | None = None,
     limit_s: float = LIMIT_S,
     journal_path: Path | None = None,
-    solving: Callable[[float, int], None] | None = None,
-    report: Counted | None = None,
+    reports: Reports = UNREPORTED,
 ) -> list[Cell]:
     """Make the runs that methods declare for this study on every scene.
 
@@ -116,8 +128,7 @@ def stability(
         programs: commands of programs of the user's own, by their names; each runs on every scene as well.
         limit_s: CPU seconds of a cell.
         journal_path: a file to which cells are appended, and whose cells are not run again.
-        solving: called with the number of scenes whose truth is known, and of all scenes.
-        report: called with the number of finished cells, of all cells, and what runs now.
+        reports: of the scenes whose truth is known, and of the cells.
 
     Raises:
         InputError: an unknown scene or method, or one that declares no such runs.
@@ -126,15 +137,15 @@ def stability(
     runs = [*declared(methods, "stability"), *((name, None, 1 / STEPS) for name in commands)]
     names = default_scenes() if scenes is None else scenes
     cuts = {name: cut(load_scene(name)) for name in names}
-    problems, unsolved = _solved(cuts, solving)
+    solved_scenes, unsolved = _solved(cuts, reports.solving)
 
     items: list[Item] = [(*run, name) for run in runs for name in cuts]
-    solved = [item for item in items if item[-1] in problems]
+    solved = [item for item in items if item[-1] in solved_scenes]
 
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
     recipe = [limit_s, SWINGS, orders]  # orders decide the digits asked for
-    cells = _Cells(recipe, PATIENCE * limit_s, commands, problems, limit_s)
-    measured = campaign(cells, solved, journal_path=journal_path, report=report)
+    cells = _Cells(recipe, PATIENCE * limit_s, commands, solved_scenes, limit_s)
+    measured = campaign(cells, solved, journal_path=journal_path, report=reports.measuring)
     finished = dict(zip(solved, measured, strict=True))
     return [
         finished.get(item) or cells.failed(item, Status.UNREACHABLE, unsolved[item[-1]])
@@ -144,9 +155,9 @@ def stability(
 
 def _solved(
     scenes: Mapping[str, Scene], solving: Callable[[float, int], None] | None
-) -> tuple[Problems, dict[str, str]]:
-    """Return the problems of the scenes that the reference can solve, and why it cannot solve others."""
-    problems: Problems = {}
+) -> tuple[dict[str, SolvedScene], dict[str, str]]:
+    """Return the scenes that the reference can solve, and why it cannot solve others."""
+    solved: dict[str, SolvedScene] = {}
     unsolved: dict[str, str] = {}
     for count, (name, scene) in enumerate(scenes.items()):
         report = solving and partial(_report_time, solving, count, len(scenes), scene)
@@ -154,12 +165,13 @@ def _solved(
             golden = golden_of(scene, TRUTH_DIGITS, Progress(report=report), grid=True)
             times = GridTruth(golden, float(scene.exact.t_end)).times
             states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
-            problems[name] = scene, golden.path, character(scene, times, states)
+            traits = character(scene, times, states)
+            solved[name] = SolvedScene(scene, golden.path, traits)
         except UnreachableError as error:
             unsolved[name] = f"The reference cannot solve it: {error}"
         if solving is not None:
             solving(count + 1, len(scenes))
-    return problems, unsolved
+    return solved, unsolved
 
 
 def _report_time(
@@ -173,15 +185,17 @@ def _report_time(
 class _Cells(Measurement[Item, Cell]):
     """Methods and programs on scenes."""
 
-    problems: Problems
+    scenes: Mapping[str, SolvedScene]
     limit_s: float
 
     kind = Cell
 
     def measure(self, item: Item) -> Cell:
         name, formulation, setting, scene_id = item
-        scene, folder, traits = self.problems[scene_id]
-        golden = load(folder)
+        solved = self.scenes[scene_id]
+        scene = solved.scene
+        traits = solved.character
+        golden = load(solved.golden_path)
         length = float(scene.exact.length)
         amplitude_m = traits.amplitude * length or length
         step_s = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
@@ -194,9 +208,8 @@ class _Cells(Measurement[Item, Cell]):
             return self._judged(item, row, traits, amplitude_m)
 
         wrong_m = WRONG * 10**-users_program.DIGITS * amplitude_m
-        row, wrong_from_s = users_program.measured(
-            name, self.commands[name], step_s, scene, golden, self.limit_s, wrong_m
-        )
+        program = users_program.Program(name, self.commands[name], step_s, self.limit_s)
+        row, wrong_from_s = users_program.measured(program, scene, golden, wrong_m)
         cell = self._judged(item, row, traits, amplitude_m)
         if cell.status != Status.SILENTLY_WRONG or wrong_from_s is None:
             return cell

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -40,32 +40,41 @@ STATUSES = {
 STATED = "the CPU seconds are those that were stated"
 
 
+@dataclass(frozen=True)
+class Program:
+    """A program that is run once.
+
+    Attributes:
+        name: its name in the row.
+        command: with placeholders, and {setting} for the step.
+        step_s: value of {setting}, in s.
+        limit_s: CPU seconds that it may take.
+    """
+
+    name: str
+    command: str
+    step_s: float
+    limit_s: float
+
+
 def measured(
-    name: str,
-    command: str,
-    setting: float,
-    scene: Scene,
-    golden: Golden,
-    limit_s: float,
-    wrong_m: float,
+    program: Program, scene: Scene, golden: Golden, wrong_m: float
 ) -> tuple[Row, float | None]:
     """Run a program on a scene; return its row, and the first time in s at which it is wrong, None if it never is.
 
     A failure of any kind becomes the row's status and reason.
 
     Args:
-        name: its name in the row.
-        command: with placeholders, and {setting} for the step.
-        setting: value of {setting}, in s.
+        program: its command and its limits.
         scene: as the program is given it.
         golden: its truth.
-        limit_s: CPU seconds that it may take.
         wrong_m: position error in m above which it is wrong.
     """
-    base = Row(name, NUMBER, setting, "step", scene.inputs, Status.OK, load=load_per_core())
+    step_s = program.step_s
+    base = Row(program.name, NUMBER, step_s, "step", scene.inputs, Status.OK, load=load_per_core())
     try:
-        words = arguments(command.replace(SETTING, repr(setting)), scene)
-        output, cpu_s, _ = run_program(words, PATIENCE * limit_s)
+        words = arguments(program.command.replace(SETTING, repr(step_s)), scene)
+        output, cpu_s, _ = run_program(words, PATIENCE * program.limit_s)
         with output:
             candidate = read_stream(output, "its output")
         return _against(base, candidate, cpu_s, scene, golden, wrong_m)

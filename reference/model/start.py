@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from ..errors import UnreachableError
 from ..numbers.precision import context, to_mpf
@@ -101,16 +102,28 @@ def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
         )
         return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
     assert inputs.angles is not None
-    angle, azimuth = (to_mpf(value / 180, ctx) for value in inputs.angles[:2])
-    angle_rate, azimuth_rate = (to_mpf(value, ctx) * ctx.pi / 180 for value in inputs.angles[2:])
-    sa, ca, sl, cl = ctx.sinpi(angle), ctx.cospi(angle), ctx.sinpi(azimuth), ctx.cospi(azimuth)
-    return at_angles(length, sa, ca, sl, cl, angle_rate, azimuth_rate)
+    angle, azimuth, angle_rate, azimuth_rate = inputs.angles
+    return at_angles(length, _angle(angle, angle_rate, ctx), _angle(azimuth, azimuth_rate, ctx))
 
 
-def at_angles(
-    length: Any, sa: Any, ca: Any, sl: Any, cl: Any, angle_rate: Any, azimuth_rate: Any
-) -> tuple[Vector, Vector]:
-    """Return position and velocity from sine and cosine of angle and azimuth and the rates, in any number type."""
+class Angle(NamedTuple):
+    """Sine, cosine and rate (1/s) of an angle, in any number type."""
+
+    sin: Any
+    cos: Any
+    rate: Any
+
+
+def _angle(degrees: Fraction, degrees_per_s: Fraction, ctx: Any) -> Angle:
+    half_turns = to_mpf(degrees / 180, ctx)
+    rate = to_mpf(degrees_per_s, ctx) * ctx.pi / 180
+    return Angle(ctx.sinpi(half_turns), ctx.cospi(half_turns), rate)
+
+
+def at_angles(length: Any, angle: Angle, azimuth: Angle) -> tuple[Vector, Vector]:
+    """Return position and velocity at an angle from the plumb line and an azimuth, in any number type."""
+    sa, ca, angle_rate = angle
+    sl, cl, azimuth_rate = azimuth
     position = (length * sa * cl, length * sa * sl, -length * ca)
     velocity = (
         length * (angle_rate * ca * cl - azimuth_rate * sa * sl),

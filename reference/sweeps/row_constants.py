@@ -17,7 +17,7 @@ from ..model.algebra import add, cross, dot, scale, subtract
 from ..model.constants import Constants, Vector, axis_distance, turn_and_pull
 from ..model.force import acceleration, force, tension
 from ..model.sections import form_along
-from ..model.start import at_angles
+from ..model.start import Angle, at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..numbers.precision import Array
 from ..scenes.inputs import RELEASES, GravityIs, Inputs, azimuth_of
@@ -167,16 +167,10 @@ def _release(columns: Columns) -> tuple[Vector, Vector]:
         z = -square_root((1 - x) * (1 + x) - y * y)
         return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
     angle, azimuth, angle_rate, azimuth_rate = (columns[name] for name in ANGLES)
-    sin_angle, cos_angle = sine_and_cosine(angle)
-    sin_azimuth, cos_azimuth = sine_and_cosine(azimuth)
     return at_angles(
         1,
-        sin_angle,
-        cos_angle,
-        sin_azimuth,
-        cos_azimuth,
-        in_radians(angle_rate),
-        in_radians(azimuth_rate),
+        Angle(*sine_and_cosine(angle), in_radians(angle_rate)),
+        Angle(*sine_and_cosine(azimuth), in_radians(azimuth_rate)),
     )
 
 

@@ -20,7 +20,7 @@ BITS = 110
 
 
 @dataclass
-class Comparison:
+class LimbsComparison:
     """What a comparison found: rows in doubt, transits lost or doubled, estimates too small, the worst errors."""
 
     rows: int = 0
@@ -53,12 +53,12 @@ def truth(inputs: Inputs, times: tuple[Fraction, ...] = ()) -> Any:
     return limbs.run(limbs.plan(inputs, BITS, (Fraction(0), *times, inputs.t_end), ("xdot",)))
 
 
-def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Comparison:
+def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> LimbsComparison:
     """Solve scenes in a batch engine and in limbs, and compare."""
     rows = rows_of(many)
     run = batch.solve(rows, RunOptions(times=True))
     estimate = errors_by_moved_runs(batch, rows, run)[0] if estimates else None
-    found = Comparison(rows=len(many))
+    found = LimbsComparison(rows=len(many))
     for i, inputs in enumerate(many):
         if run.fate[i] != OK:
             found.doubtful += 1
@@ -68,7 +68,12 @@ def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Compari
 
 
 def _one(
-    found: Comparison, rows: Rows, run: Outcomes, estimate: Errors | None, i: int, inputs: Inputs
+    found: LimbsComparison,
+    rows: Rows,
+    run: Outcomes,
+    estimate: Errors | None,
+    i: int,
+    inputs: Inputs,
 ) -> None:
     swings = estimate is not None and run.apsides[i] > 1
     seen = (Fraction(run.apsis_first[i]), Fraction(run.apsis_last[i])) if swings else ()
@@ -105,16 +110,15 @@ def _one(
         own_frequency = (len(times) - 1) / (2 * (run.t_last[i] - run.t_first[i]))
         found.judge(inputs, "frequency", abs(own_frequency - frequency), estimate.frequency[i])
     if swings:
-        _judge_swing(found, rows, run, estimate, i, inputs, exact)
+        _judge_swing(found, rows, run, estimate, i, exact)
 
 
 def _judge_swing(
-    found: Comparison,
+    found: LimbsComparison,
     rows: Rows,
     run: Outcomes,
     estimate: Errors,
     i: int,
-    inputs: Inputs,
     exact: Any,
 ) -> None:
     """Judge swing frequency, precession and largest angle.
@@ -122,11 +126,10 @@ def _judge_swing(
     Half turns and the number of highest points are the run's own; they cannot be off by one unnoticed, as the first and
     the last are judged.
     """
-    (first, start, low), (last, end, high) = (
-        _highest(rows, i, inputs, exact, place) for place in (1, 2)
-    )
+    (first, start, low), (last, end, high) = (_highest(rows, i, exact, place) for place in (1, 2))
     span, own_span = last - first, run.apsis_last[i] - run.apsis_first[i]
     gaps = run.apsides[i] - 1
+    inputs = exact.plan.inputs
     found.judge(
         inputs, "swing", abs(float(gaps / (2 * span)) - gaps / (2 * own_span)), estimate.swing[i]
     )
@@ -139,11 +142,9 @@ def _judge_swing(
     found.judge(inputs, "angle", np.degrees(max(missed, 0.0)), estimate.angle[i])
 
 
-def _highest(
-    rows: Rows, i: int, inputs: Inputs, exact: Any, place: int
-) -> tuple[Fraction, float, float]:
+def _highest(rows: Rows, i: int, exact: Any, place: int) -> tuple[Fraction, float, float]:
     """Return time, azimuth and angle of the highest point next to a time of the grid: one step of Newton's method."""
-    grid, length = exact.grid, inputs.length
+    grid, length = exact.grid, exact.plan.inputs.length
     n, velocity = (
         tuple(grid.exact(name)[place] / length for name in names)
         for names in (("x", "y", "z"), ("vx", "vy", "vz"))

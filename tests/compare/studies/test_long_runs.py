@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from compare.studies.campaign import Reports
 from compare.studies.long_runs import laws, long_runs
 from reference import load_scene
 
@@ -28,7 +29,7 @@ def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(
         ITEMS,
         scene,
         journal_path=journal_path,
-        report=lambda finished, total, now: reports.append(f"{finished} of {total}"),
+        reports=Reports(measuring=lambda *now: reports.append("{} of {}".format(*now))),
     )
     assert again[0] == rows[0]
     assert reports == ["1 of 3", "2 of 3"]
@@ -57,4 +58,4 @@ def test_without_a_scene_the_truth_is_solved_for_over_thirty_days(
         raise Enough
 
     with pytest.raises(Enough):
-        long_runs(ITEMS, solving=stop)
+        long_runs(ITEMS, reports=Reports(solving=stop))

@@ -15,6 +15,7 @@ from here import measured_here
 from compare.methods import METHODS
 from compare.methods.rhs.problem import Problem, suited
 from compare.report.stability_page import document_of, headlines, page_text, text_table
+from compare.studies.campaign import Reports
 from compare.studies.character import character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.stability import Cell, cut, default_scenes, digits_requested, stability
@@ -229,7 +230,9 @@ def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_a
     solved: list[tuple[float, int]] = []
     hard = shortened(tmp_path, "hard", "10", "1")
     lost, measured = stability(
-        [str(own), hard], ["rkmk4"], solving=lambda done, total: solved.append((done, total))
+        [str(own), hard],
+        ["rkmk4"],
+        reports=Reports(solving=lambda done, total: solved.append((done, total))),
     )
     assert solved == sorted(solved) and (1, 2) in solved and solved[-1] == (2, 2)
     assert (lost.status, lost.digits, lost.cpu_s) == (Status.UNREACHABLE, None, None)
