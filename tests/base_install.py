@@ -31,7 +31,7 @@ STUDY = "study paris --t-end 60 --methods heyoka_double --no-formulations"
 
 
 @dataclass(frozen=True)
-class Case:
+class CommandCase:
     """A command line without `foucault`, and how it has to end: with a status, or refused for want of an extra."""
 
     line: str
@@ -58,58 +58,58 @@ class Case:
 
 
 CASES = [
-    Case("scenes"),
-    Case("show --template"),
-    Case("show paris --sensitivity"),
-    Case("show paris --equations", "enclose"),
-    Case("show paris --equations --set run.level=confirmed"),
-    Case("show paris --proved", "enclose"),
-    Case("show paris --uncertain length=0.001", "enclose"),
-    Case("show museum_gate --json"),
-    Case("show museum_gate --uncertain none"),
-    Case("generate laboratory --t-end 10 --digits 15 --level confirmed --section highest"),
-    Case("generate laboratory --t-end 10", "enclose"),
-    Case("generate laboratory --t-end 10 --level confirmed --engine limbs", "fast"),
-    Case("generate museum_gate --t-end 10", "enclose"),
-    Case("generate --all --out all", "fast"),
-    Case("generate --all --out all --cluster local:1", "cluster"),
-    Case("verify paris museum_gate"),
-    Case("verify golden/laboratory"),
-    Case("verify golden/laboratory --recompute"),
-    Case("verify conical --recompute", "fast"),
-    Case("score paris paris.csv"),
-    Case("score paris paris.csv --json"),
-    Case("score paris off.csv", status=DISAGREES),
-    Case("score paris --run 'cat paris.csv' --repeats 0"),
-    Case("score paris --approximation mathar_item_2", status=DISAGREES),
-    Case("score --suite suite --out page"),
-    Case("score --how python"),
-    Case("score paris paris.csv --plot error.svg", "plot"),
-    Case("score museum_gate paris.csv", "enclose"),
-    Case(
+    CommandCase("scenes"),
+    CommandCase("show --template"),
+    CommandCase("show paris --sensitivity"),
+    CommandCase("show paris --equations", "enclose"),
+    CommandCase("show paris --equations --set run.level=confirmed"),
+    CommandCase("show paris --proved", "enclose"),
+    CommandCase("show paris --uncertain length=0.001", "enclose"),
+    CommandCase("show museum_gate --json"),
+    CommandCase("show museum_gate --uncertain none"),
+    CommandCase("generate laboratory --t-end 10 --digits 15 --level confirmed --section highest"),
+    CommandCase("generate laboratory --t-end 10", "enclose"),
+    CommandCase("generate laboratory --t-end 10 --level confirmed --engine limbs", "fast"),
+    CommandCase("generate museum_gate --t-end 10", "enclose"),
+    CommandCase("generate --all --out all", "fast"),
+    CommandCase("generate --all --out all --cluster local:1", "cluster"),
+    CommandCase("verify paris museum_gate"),
+    CommandCase("verify golden/laboratory"),
+    CommandCase("verify golden/laboratory --recompute"),
+    CommandCase("verify conical --recompute", "fast"),
+    CommandCase("score paris paris.csv"),
+    CommandCase("score paris paris.csv --json"),
+    CommandCase("score paris off.csv", status=DISAGREES),
+    CommandCase("score paris --run 'cat paris.csv' --repeats 0"),
+    CommandCase("score paris --approximation mathar_item_2", status=DISAGREES),
+    CommandCase("score --suite suite --out page"),
+    CommandCase("score --how python"),
+    CommandCase("score paris paris.csv --plot error.svg", "plot"),
+    CommandCase("score museum_gate paris.csv", "enclose"),
+    CommandCase(
         "score museum_gate --transits transits.csv --section 'gate 30' --uncertain none",
         status=DISAGREES,
     ),
-    Case("plot paris", "plot"),
-    Case("plot paris.csv --out path.svg", "plot"),
-    Case("atlas --out atlas", "plot"),
-    Case("methods"),
-    Case(STUDY),
-    Case(f"{STUDY} --run 'cat paris.csv'"),
-    Case(f"{STUDY} --out study"),
-    Case("study paris --methods rk4", "methods"),
-    Case("stability --scenes laboratory --methods heyoka_double"),
-    Case(SWEEP),
-    Case(f"{SWEEP} --level self_consistent"),
-    Case(f"{SWEEP} --level enclosed", "enclose"),
-    Case(f"{SWEEP} --out swept", "sweep"),
-    Case(f"{SWEEP} --plot swept.svg", "plot"),
-    Case(f"{SWEEP} --cluster local:1", "cluster"),
-    Case("sweep paris --rows rows.parquet", "sweep"),
-    Case("paper"),
-    Case("paper --out papers", "plot"),
-    Case("pend -T 1", "methods"),
-    Case("pend -T 1 --exact"),
+    CommandCase("plot paris", "plot"),
+    CommandCase("plot paris.csv --out path.svg", "plot"),
+    CommandCase("atlas --out atlas", "plot"),
+    CommandCase("methods"),
+    CommandCase(STUDY),
+    CommandCase(f"{STUDY} --run 'cat paris.csv'"),
+    CommandCase(f"{STUDY} --out study"),
+    CommandCase("study paris --methods rk4", "methods"),
+    CommandCase("stability --scenes laboratory --methods heyoka_double"),
+    CommandCase(SWEEP),
+    CommandCase(f"{SWEEP} --level self_consistent"),
+    CommandCase(f"{SWEEP} --level enclosed", "enclose"),
+    CommandCase(f"{SWEEP} --out swept", "sweep"),
+    CommandCase(f"{SWEEP} --plot swept.svg", "plot"),
+    CommandCase(f"{SWEEP} --cluster local:1", "cluster"),
+    CommandCase("sweep paris --rows rows.parquet", "sweep"),
+    CommandCase("paper"),
+    CommandCase("paper --out papers", "plot"),
+    CommandCase("pend -T 1", "methods"),
+    CommandCase("pend -T 1 --exact"),
 ]
 
 
@@ -135,7 +135,7 @@ def main() -> int:
     if present:
         print(f"This is no installation without extras: it has {', '.join(present)}.")
         return REFUSED
-    cases = [*CASES, *(Case(f"show {scene}") for scene in scene_ids())]
+    cases = [*CASES, *(CommandCase(f"show {scene}") for scene in scene_ids())]
     untried = {name for names in GROUPS.values() for name in names} - {
         case.line.split()[0] for case in cases
     }

@@ -154,7 +154,7 @@ def asks_for_no_transits(folder: Path) -> None:
     (folder / "vectors.json").write_text(json.dumps(vectors, indent=1, ensure_ascii=False) + "\n")
 
 
-class Case(NamedTuple):
+class Refusal(NamedTuple):
     """A dataset that is changed, the exit status of the checker, and what it says."""
 
     name: str
@@ -179,7 +179,7 @@ X_OF_ROW_1 = ",0.300000000000000000000000000000"
 
 TABLES = [
     *(
-        Case(
+        Refusal(
             f"no last newline: {file}",
             without_last_newline(file),
             2,
@@ -189,7 +189,7 @@ TABLES = [
         for file in ALL_TABLES
     ),
     *(
-        Case(
+        Refusal(
             f"{more!r} after the last row: {file}",
             appended(file, more),
             2,
@@ -199,35 +199,39 @@ TABLES = [
         for file in ALL_TABLES
         for more in ("5", "5,", "5,1,2,3,4,5,")
     ),
-    Case(
+    Refusal(
         "a cell too many",
         replaced("grid.csv", X_OF_ROW_1, f"{X_OF_ROW_1},1"),
         2,
         "grid.csv, line 2: ",
     ),
-    Case("a cell too few", replaced("grid.csv", X_OF_ROW_1, ""), 2, "grid.csv, line 2: "),
-    Case("an empty table", written("grid.csv", ""), 2, "is empty"),
-    Case("a header alone", written("grid.csv", "t,x,y,z,vx,vy,vz\n"), 1, "0 rows"),
-    Case("another header", replaced("grid.csv", "vz\n", "vzz\n"), 2, "the first line must be"),
-    Case("a byte 0", replaced("grid.csv", "0.3000", "0.3\0000"), 2, "byte 0"),
-    Case("carriage returns", replaced("grid.csv", "vz\n", "vz\r\n"), 2, "the first line must be"),
-    Case("a table that is a folder", a_folder("grid.csv"), 2, "cannot be read"),
-    Case(
+    Refusal("a cell too few", replaced("grid.csv", X_OF_ROW_1, ""), 2, "grid.csv, line 2: "),
+    Refusal("an empty table", written("grid.csv", ""), 2, "is empty"),
+    Refusal("a header alone", written("grid.csv", "t,x,y,z,vx,vy,vz\n"), 1, "0 rows"),
+    Refusal("another header", replaced("grid.csv", "vz\n", "vzz\n"), 2, "the first line must be"),
+    Refusal("a byte 0", replaced("grid.csv", "0.3000", "0.3\0000"), 2, "byte 0"),
+    Refusal(
+        "carriage returns", replaced("grid.csv", "vz\n", "vz\r\n"), 2, "the first line must be"
+    ),
+    Refusal("a table that is a folder", a_folder("grid.csv"), 2, "cannot be read"),
+    Refusal(
         "a table that is listed, but not there", removed("grid.binary64.csv"), 2, "cannot be opened"
     ),
-    Case("vectors that are listed, but not there", removed("vectors.json"), 2, "cannot be opened"),
-    Case(
+    Refusal(
+        "vectors that are listed, but not there", removed("vectors.json"), 2, "cannot be opened"
+    ),
+    Refusal(
         "a table that was not asked for",
         written("sections.csv", "section\n"),
         1,
         "does not ask for it",
     ),
-    Case("transits that were not asked for", asks_for_no_transits, 1, "does not ask for it"),
+    Refusal("transits that were not asked for", asks_for_no_transits, 1, "does not ask for it"),
 ]
 
 NUMBERS = [
     *(
-        Case(
+        Refusal(
             f"a number {text[:40]!r}, {len(text)} characters",
             replaced("grid.csv", X_OF_ROW_1, f",{text}"),
             status,
@@ -246,18 +250,18 @@ NUMBERS = [
             ("nan", 1, "another number of decimals"),
         ]
     ),
-    Case(
+    Refusal(
         "a row with the number 1x",
         replaced("transits.csv", "\n1,", "\n1x,"),
         1,
         "its number is wrong",
     ),
-    Case("decimals 30x", value("decimals", "grid", "x", to="30x"), 2, "not a whole number"),
+    Refusal("decimals 30x", value("decimals", "grid", "x", to="30x"), 2, "not a whole number"),
 ]
 
 DOCUMENTS = [
     *(
-        Case(f"{file} of {text[:9]!r}, {len(text)} characters", written(file, text), 2, says)
+        Refusal(f"{file} of {text[:9]!r}, {len(text)} characters", written(file, text), 2, says)
         for file in (MANIFEST, "vectors.json")
         for text, says in [
             ("[" * 100_000, "brackets in one another"),
@@ -281,28 +285,28 @@ DOCUMENTS = [
             ("\0", "byte 0"),
         ]
     ),
-    Case("a manifest that is a folder", a_folder(MANIFEST), 2, "cannot be read"),
-    Case("an unknown input", replaced(MANIFEST, LENGTH, f'{LENGTH}, "mass": "28"'), 1, "mass"),
-    Case(
+    Refusal("a manifest that is a folder", a_folder(MANIFEST), 2, "cannot be read"),
+    Refusal("an unknown input", replaced(MANIFEST, LENGTH, f'{LENGTH}, "mass": "28"'), 1, "mass"),
+    Refusal(
         "an unknown key", replaced(MANIFEST, '"digits": 30', '"digits": 30, "mass": 28'), 1, "mass"
     ),
-    Case(
+    Refusal(
         "a vector without its row",
         replaced("vectors.json", '"row": 1,', '"now": 1,'),
         1,
         "states.0.now",
     ),
-    Case(
+    Refusal(
         "a vector with more",
         replaced("vectors.json", '"row": 1,', '"row": 1, "t": "7",'),
         1,
         "states.0.t",
     ),
-    Case(
+    Refusal(
         "a vector of row 0", replaced("vectors.json", '"row": 1,', '"row": 0,'), 2, "has no row 0"
     ),
     *(
-        Case(
+        Refusal(
             f"a vector of row {row}",
             replaced("vectors.json", '"row": 1,', f'"row": {row},'),
             2,
@@ -311,7 +315,7 @@ DOCUMENTS = [
         for row in (LARGEST, LEAST, "302", "1e0")
     ),
     *(
-        Case(
+        Refusal(
             f"digits {text}",
             replaced(MANIFEST, '"digits": 30', f'"digits": {text}'),
             2,
@@ -323,7 +327,9 @@ DOCUMENTS = [
 
 INPUTS = [
     *(
-        Case(f"a length {text[:30]!r}", replaced(MANIFEST, LENGTH, f'"length": "{text}"'), 2, says)
+        Refusal(
+            f"a length {text[:30]!r}", replaced(MANIFEST, LENGTH, f'"length": "{text}"'), 2, says
+        )
         for text, says in [
             (f"1e{LEAST}", "is not a number"),
             (f"1e{LARGEST}", "is not a number"),
@@ -344,96 +350,96 @@ INPUTS = [
             ("-1", "must be above 0"),
         ]
     ),
-    Case(
+    Refusal(
         "a negative drag",
         value("scene", "pendulum", "drag", to="-1e-60"),
         2,
         "drag must be at least 0",
     ),
-    Case("no drag", without_input, 2, "has no scene.pendulum.drag"),
-    Case(
+    Refusal("no drag", without_input, 2, "has no scene.pendulum.drag"),
+    Refusal(
         "a flattening of 1",
         value("scene", "site", "inverse_flattening", to="1"),
         2,
         "must be above 1",
     ),
-    Case("a cord that is too short", replaced(MANIFEST, X, '"x": "2"'), 1, "not proved"),
-    Case("too much gravity", value("scene", "site", "gravity", to="1e499"), 1, "not proved"),
-    Case(
+    Refusal("a cord that is too short", replaced(MANIFEST, X, '"x": "2"'), 1, "not proved"),
+    Refusal("too much gravity", value("scene", "site", "gravity", to="1e499"), 1, "not proved"),
+    Refusal(
         "too many steps",
         value("scene", "pendulum", "drag", to="1e40"),
         1,
         "more than 1e+07 steps",
         AT_REST,
     ),
-    Case(
+    Refusal(
         "two kinds of release",
         replaced(MANIFEST, X, f'{X}, "angle": "30", "azimuth": "0"'),
         1,
         "WRONG",
     ),
-    Case("transits: yes", value("scene", "run", "transits", to="yes"), 2, "true or false"),
-    Case(
+    Refusal("transits: yes", value("scene", "run", "transits", to="yes"), 2, "true or false"),
+    Refusal(
         "inputs: binary32", replaced(MANIFEST, '"decimal"', '"binary32"'), 2, "binary64 or decimal"
     ),
-    Case("level: certain", value("level", to="certain"), 2, "level is certain"),
-    Case(
+    Refusal("level: certain", value("level", to="certain"), 2, "level is certain"),
+    Refusal(
         "a level below that of the scene", value("level", to="confirmed"), 1, "should be enclosed"
     ),
-    Case("another format", value("schema_version", to=4), 2, "format 3"),
+    Refusal("another format", value("schema_version", to=4), 2, "format 3"),
 ]
 
 MEANING = [
-    Case(
+    Refusal(
         "units",
         replaced(MANIFEST, '"m/s"', '"km/h"'),
         1,
         "units.vx, vy, vz is km/h, and should be m/s",
     ),
-    Case(
+    Refusal(
         "axes",
         value("frame", to="topocentric, axes x west"),
         1,
         "frame is topocentric, axes x west",
     ),
-    Case(
+    Refusal(
         "axes of the vectors",
         replaced("vectors.json", "x east", "x west"),
         1,
         "vectors.json: frame",
     ),
-    Case(
+    Refusal(
         "units of the vectors",
         replaced("vectors.json", '"vx": "m/s"', '"vx": "km/h"'),
         1,
         "columns.vx",
     ),
-    Case(
+    Refusal(
         "another reading on the page",
         replaced("certified.txt", "as: decimal", "as: binary64"),
         1,
         "Inputs are read",
     ),
-    Case(
+    Refusal(
         "a bound twice on the page",
         replaced("certified.txt", "vx 5.1", "vx 6.1e-33, vx 5.1"),
         1,
         "by column",
     ),
-    Case(
+    Refusal(
         "a second number in a line",
         replaced("certified.txt", "by column: ", "by column: x 1, "),
         1,
         "by column",
     ),
-    Case(
+    Refusal(
         "the scene of the vectors", replaced("vectors.json", X, '"x": "0.2"'), 1, "scene.release.x"
     ),
 ]
 
 DOUBLES = [
     *(
-        Case(f"a hexfloat {text!r} in {file}", replaced(file, "0x0.0p+0", text), 2, says)
+        Refusal(f"a hexfloat {text!r} in {file}", replaced(file, "0x0.0p+0", text), 2, says)
         for file in ("grid.binary64.csv", "vectors.json")
         for text, says in [
             ("0", "is not a hexfloat"),
@@ -451,33 +457,37 @@ DOUBLES = [
             ("0x0.8p+0", "no double is written"),
         ]
     ),
-    Case(
+    Refusal(
         "a double within a lax bound",
         lax_bound_and_a_double_within_it,
         1,
         "is not the nearest double",
     ),
-    Case(
+    Refusal(
         "a direction beside doubles",
         in_a_doubles_row("direction", "+1"),
         1,
         "direction is not that of",
     ),
-    Case("a number beside doubles", in_a_doubles_row("k", "2"), 1, "k is not that of"),
-    Case("a bound beside doubles", in_a_doubles_row("bound", "5.1e-28"), 1, "bound is not that of"),
+    Refusal("a number beside doubles", in_a_doubles_row("k", "2"), 1, "k is not that of"),
+    Refusal(
+        "a bound beside doubles", in_a_doubles_row("bound", "5.1e-28"), 1, "bound is not that of"
+    ),
 ]
 
 INTERVALS = [
-    Case("an unknown parity", possible("1", "2", "banana"), 1, "not odd, even or unknown"),
-    Case(
+    Refusal("an unknown parity", possible("1", "2", "banana"), 1, "not odd, even or unknown"),
+    Refusal(
         "an interval after the end", possible("3000.5", "3000.6", "even"), 1, "ends after the run"
     ),
-    Case("an interval over the end", possible("2999.9", "3000.1", "even"), 1, "ends after the run"),
+    Refusal(
+        "an interval over the end", possible("2999.9", "3000.1", "even"), 1, "ends after the run"
+    ),
 ]
 
 SECTIONS = [
     *(
-        Case(
+        Refusal(
             f"sections {words[:30]!r}",
             replaced(MANIFEST, '"gate 127"', f'"{words}"'),
             status,
@@ -497,11 +507,13 @@ SECTIONS = [
         ]
     ),
     *(
-        Case(f"{count} rows of a section", section_count(count), 2, "whole number", WITH_SECTIONS)
+        Refusal(
+            f"{count} rows of a section", section_count(count), 2, "whole number", WITH_SECTIONS
+        )
         for count in (-1, -5001, -100_000, 10**18)
     ),
-    Case("fewer rows of a section", section_count(100), 1, "the manifest 100", WITH_SECTIONS),
-    Case(
+    Refusal("fewer rows of a section", section_count(100), 1, "the manifest 100", WITH_SECTIONS),
+    Refusal(
         "rows of another section",
         replaced(MANIFEST, ": 107\n", ': 107, "lowest": 3\n'),
         1,

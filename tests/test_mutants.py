@@ -118,7 +118,7 @@ def test_a_mutated_module_is_noticed_if_its_check_fails_or_does_not_end(written)
     def check(module):
         assert module.f(3) == 1
 
-    assert isinstance(noticed(every["f, drop term: 1"], check, cpu_s=0.1), mutations.OutOfTimeError)
+    assert isinstance(noticed(every["f, drop term: 1"], check, cpu_s=0.1), mutations.CpuLimitError)
     assert isinstance(noticed(every["f, drop term: 1 (2)"], check), AssertionError)
     assert noticed(every["g, drop statement: return 1"], check) is None
 

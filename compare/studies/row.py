@@ -21,7 +21,7 @@ from ..methods.method import RunOutcome
 
 T = TypeVar("T")
 K = TypeVar("K")
-Column: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
+ColumnValues: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
 H_ROWS = 64  # rows at which h is evaluated
 _ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax
@@ -210,14 +210,14 @@ def grouped(items: Iterable[T], key: Callable[[T], K]) -> dict[K, list[T]]:
     return groups
 
 
-def difference(a: Column, b: Column) -> Array:
+def difference(a: ColumnValues, b: ColumnValues) -> Array:
     """Return a - b as doubles, shape (rows,); where a number is exact, it is subtracted exactly."""
     if isinstance(a, np.ndarray) and isinstance(b, np.ndarray):
         return np.asarray(a - b)  # the difference of doubles that agree so far is exact
     return np.array([float(Fraction(p) - Fraction(q)) for p, q in zip(a, b, strict=True)])
 
 
-def _column(outcome: RunOutcome, name: str) -> Column:
+def _column(outcome: RunOutcome, name: str) -> ColumnValues:
     """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
     if outcome.exact is None:
         return outcome.states[:, COLUMNS.index(name)]

@@ -122,7 +122,7 @@ class Work:
     def remaining(self) -> str:
         """Return the expected remaining time in words; empty until a rate can be measured."""
         seconds = self.remaining_s()
-        return "" if seconds is None else f"about {in_words(seconds)} left"
+        return "" if seconds is None else f"about {duration_in_words(seconds)} left"
 
 
 @contextmanager
@@ -243,7 +243,7 @@ def _rough(amount: float) -> str:
     return f"{amount:,.0f}" if amount >= 10 else f"{amount:.2g}"
 
 
-def in_words(seconds: float) -> str:
+def duration_in_words(seconds: float) -> str:
     """Return a rough time in the unit that suits it: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
     scales = (
         ("seconds", 1, 90),

@@ -188,7 +188,7 @@ def _columns_of_section(word: str, solution: Solution) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Audit:
+class RowAudit:
     """Findings of an audit.
 
     A row that the solver refuses in so many digits is neither right nor wrong.
@@ -212,7 +212,7 @@ def audited(
     request: Request,
     read: Callable[[int], Mapping[str, Any]],
     report: Callable[[int], None] = lambda _: None,
-) -> Audit:
+) -> RowAudit:
     """Solve a sample of the rows again: the request says how many, its hash which.
 
     Args:
@@ -240,7 +240,7 @@ def audited(
                 ratios[number] = ratio
 
     worst_row = max(ratios, key=lambda number: ratios[number], default=None)
-    return Audit(
+    return RowAudit(
         rows=len(ratios),
         wrong=tuple(number for number, ratio in ratios.items() if not ratio <= 1),
         worst_ratio=0.0 if worst_row is None else ratios[worst_row],

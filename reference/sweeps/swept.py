@@ -17,7 +17,7 @@ from ..status import Status
 from ..system.imports import missing
 from .axes import WORD_FIELDS
 from .part import Part, Tally
-from .promote import Audit
+from .promote import RowAudit
 from .request import Request
 from .store import TRANSITS, Store
 
@@ -42,7 +42,7 @@ class Swept(Framed):
     store: Store | None = None
     solved: Part = field(default_factory=Part, repr=False)
     tally: Tally = field(default_factory=Tally)
-    audit: Audit | None = None
+    audit: RowAudit | None = None
     compile_s: float = 0.0
     audit_s: float = 0.0
     wall_s: float = 0.0

@@ -217,7 +217,7 @@ def truths(rows: list[tuple[str, Row]], folder: Path, digits: int) -> list[dict[
 
 
 @dataclass
-class Column:
+class CheckedColumn:
     """What was found of a column: rows compared, faults of each kind, the largest error over the stated one."""
 
     compared: int = 0
@@ -231,7 +231,7 @@ class Comparison:
     def __init__(self, engine: str, rows: list[tuple[str, Row]]) -> None:
         self.engine, self.rows = engine, rows
         self.statuses: dict[str, int] = defaultdict(int)
-        self.columns: dict[str, Column] = defaultdict(Column)
+        self.columns: dict[str, CheckedColumn] = defaultdict(CheckedColumn)
         self.faults: list[str] = []
 
     def fault(self, place: int, column: str, fault: str, said: str) -> None:

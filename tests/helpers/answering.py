@@ -1,4 +1,4 @@
-"""Answers that tests have measured in child processes, in a file whose import takes little."""
+"""Replies that tests have measured in child processes, in a file whose import takes little."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reference.status import Status
 
 
 @dataclass(frozen=True)
-class Answer:
+class Reply:
     """A word that a child process sent, and what it knows of itself."""
 
     text: str
@@ -23,7 +23,7 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Answers(Measurement[tuple[str, str], Answer]):
+class Replies(Measurement[tuple[str, str], Reply]):
     """A word that is sent back for each item; `hangs` hangs, and `dies` ends the process."""
 
     recipe: Any = "one"
@@ -31,17 +31,17 @@ class Answers(Measurement[tuple[str, str], Answer]):
     commands: Mapping[str, str] = field(default_factory=dict)
     offset: int = 7
 
-    kind = Answer
+    kind = Reply
 
-    def measure(self, item: tuple[str, str]) -> Answer:
+    def measure(self, item: tuple[str, str]) -> Reply:
         word = item[-1]
         if word == "hangs":
             signal.pause()
         if word == "dies":
             os._exit(3)
-        return Answer(
+        return Reply(
             f"{word} {self.offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"]
         )
 
-    def failed(self, item: tuple[str, str], status: Status, reason: str) -> Answer:
-        return Answer(f"{item[-1]}: {reason}", status)
+    def failed(self, item: tuple[str, str], status: Status, reason: str) -> Reply:
+        return Reply(f"{item[-1]}: {reason}", status)

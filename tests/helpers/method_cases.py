@@ -26,7 +26,7 @@ SECTIONS = {
 
 
 @dataclass(frozen=True)
-class Case:
+class SolvedCase:
     scene: Scene
     solution: Solution
 
@@ -66,7 +66,7 @@ class Counted(Problem):
 @cache
 def case(name):
     scene = make_scene(name, inputs="binary64", **SECTIONS[name])
-    return Case(scene, reference.solve(scene, digits=40, level="computed", transits=False))
+    return SolvedCase(scene, reference.solve(scene, digits=40, level="computed", transits=False))
 
 
 def python_function(program):

@@ -461,16 +461,16 @@ def drawn(mutations: Iterable[Mutation], seed: int) -> list[Mutation]:
     )
 
 
-class OutOfTimeError(Exception):
+class CpuLimitError(Exception):
     """What a mutation runs into that does not end."""
 
 
 @contextmanager
 def limited(cpu_s: float) -> Iterator[None]:
-    """Raise OutOfTimeError after some seconds of this process."""
+    """Raise CpuLimitError after some seconds of this process."""
 
     def stop(*_: object) -> None:
-        raise OutOfTimeError(f"not done after {cpu_s} CPU seconds")
+        raise CpuLimitError(f"not done after {cpu_s} CPU seconds")
 
     before = signal.signal(signal.SIGVTALRM, stop)
     signal.setitimer(signal.ITIMER_VIRTUAL, cpu_s)

@@ -101,7 +101,7 @@ def _compass(x: float, y: float) -> Iterable[str]:
 
 
 @dataclass(frozen=True)
-class Axis:
+class LogarithmicAxis:
     """A logarithmic axis: powers of ten at its ends, pixels at its ends, and its ticks with their names."""
 
     powers: tuple[float, float]
@@ -115,10 +115,10 @@ class Axis:
         return self.pixels[0] + part * (self.pixels[1] - self.pixels[0])
 
 
-TIMES = Axis(
+TIMES = LogarithmicAxis(
     (-2.5, 2.0), (86, 610), {0.01: "10 ms", 0.1: "100 ms", 1: "1 s", 10: "10 s", 100: "100 s"}
 )
-ERRORS = Axis(
+ERRORS = LogarithmicAxis(
     (-13, 0), (364, 44), {1: "1 m", 1e-3: "1 mm", 1e-6: "1 µm", 1e-9: "1 nm", 1e-12: "1 pm"}
 )
 

@@ -362,7 +362,7 @@ def all_zeros(w: Bisection, z: LaneZeros, polynomial: LanePolynomial, multiplici
     is_same_side = (after > 0.0) == (z.after[lane] > 0.0)
     if abs(before) <= noise or abs(after) <= noise or not is_same_side:
         return DOUBT
-    count = _isolate(w, size, noise, _Interval(0.0, polynomial.length, before, after))
+    count = _isolate(w, size, noise, _LaneInterval(0.0, polynomial.length, before, after))
     for i in range(count):
         w.slopes[i] = _lane_slope(polynomial, w.places[i])
     return count
@@ -378,7 +378,7 @@ def _copy_polynomial(w: Bisection, polynomial: LanePolynomial, skipped: int) -> 
     return _NOISE * total
 
 
-class _Interval(NamedTuple):
+class _LaneInterval(NamedTuple):
     """An interval, and the polynomial's values at its ends."""
 
     low: float
@@ -388,7 +388,7 @@ class _Interval(NamedTuple):
 
 
 @compiled
-def _isolate(w: Bisection, size: int, noise: float, whole: _Interval) -> int:
+def _isolate(w: Bisection, size: int, noise: float, whole: _LaneInterval) -> int:
     """Write the zeros of the polynomial `w.f` of `size` coefficients, in order; return their number, or DOUBT."""
     # the stack holds upper ends of intervals, and the values there: the next interval's on top
     w.stack[0] = whole.high

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from answering import Answer, Answers
+from answering import Reply, Replies
 
 from compare.studies.campaign import Counted, campaign
 from reference import InputError
@@ -20,8 +20,8 @@ def run(
     journal_path: Path | None = None,
     report: Counted | None = None,
     **fields: Any,
-) -> list[Answer]:
-    return campaign(Answers(**fields), items, journal_path=journal_path, report=report)
+) -> list[Reply]:
+    return campaign(Replies(**fields), items, journal_path=journal_path, report=report)
 
 
 @pytest.fixture
@@ -79,7 +79,7 @@ def test_results_of_the_same_recipe_and_machine_are_not_measured_again(
     with path.open("a") as stream:
         stream.write('{"recipe": "cut off by an interr\n')
 
-    def measured(**fields: Any) -> tuple[list[Answer], list[tuple[int, int, str]]]:
+    def measured(**fields: Any) -> tuple[list[Reply], list[tuple[int, int, str]]]:
         reports.clear()
         return run(items, journal_path=path, report=lambda *now: reports.append(now), **fields), [
             *reports

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from reference.commands.progress import Work, in_words, progress
+from reference.commands.progress import Work, duration_in_words, progress
 from reference.system.channel import ACTIVITY
 
 
@@ -119,4 +119,4 @@ def test_short_work_gets_no_line(clock, capsys):
     ],
 )
 def test_a_rough_time_has_two_digits_and_the_unit_that_suits_it(seconds, words):
-    assert in_words(seconds) == words
+    assert duration_in_words(seconds) == words
