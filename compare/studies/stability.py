@@ -208,7 +208,7 @@ class _Cells(Measurement[Item, Cell]):
             return self._judged(item, row, traits, amplitude_m)
 
         wrong_m = WRONG * 10**-users_program.DIGITS * amplitude_m
-        program = users_program.Program(name, self.commands[name], step_s, self.limit_s)
+        program = users_program.ProgramRun(name, self.commands[name], step_s, self.limit_s)
         row, wrong_from_s = users_program.measured(program, scene, golden, wrong_m)
         cell = self._judged(item, row, traits, amplitude_m)
         if cell.status != Status.SILENTLY_WRONG or wrong_from_s is None:

@@ -41,8 +41,8 @@ STATED = "the CPU seconds are those that were stated"
 
 
 @dataclass(frozen=True)
-class Program:
-    """A program that is run once.
+class ProgramRun:
+    """One run of a program.
 
     Attributes:
         name: its name in the row.
@@ -58,14 +58,14 @@ class Program:
 
 
 def measured(
-    program: Program, scene: Scene, golden: Golden, wrong_m: float
+    program: ProgramRun, scene: Scene, golden: Golden, wrong_m: float
 ) -> tuple[Row, float | None]:
     """Run a program on a scene; return its row, and the first time in s at which it is wrong, None if it never is.
 
     A failure of any kind becomes the row's status and reason.
 
     Args:
-        program: its command and its limits.
+        program: what is run, and its limits.
         scene: as the program is given it.
         golden: its truth.
         wrong_m: position error in m above which it is wrong.

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from answering import Reply, Replies
+from answering import Replies, Reply
 
 from compare.studies.campaign import Counted, campaign
 from reference import InputError
