@@ -40,10 +40,10 @@ from .sheets import (
 )
 
 _MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles
-TEXTS = texts_of(__file__)
-MEANING: dict[Level, str] = TEXTS["levels"]
-CONFIRMED: dict[Confirmation, str] = TEXTS["confirmations"]
-NOTES: dict[str, str] = TEXTS["notes"]  # on the vectors
+_TEXTS = texts_of(__file__)
+MEANING: dict[Level, str] = _TEXTS["levels"]
+CONFIRMED: dict[Confirmation, str] = _TEXTS["confirmations"]
+NOTES: dict[str, str] = _TEXTS["notes"]  # on the vectors
 MOST = 16  # states, and as many transits
 
 
@@ -174,7 +174,7 @@ def _inputs(manifest: Manifest) -> Iterator[str]:
         yield f"  {field:26} {value}"
     yield ""
     yield "Model: full Lagrangian of the Foucault pendulum (Mathar), axes x east, y north, z up, origin at the"
-    yield f"suspension; {TEXTS['gravity'][manifest.scene['site']['gravity_is']]}"
+    yield f"suspension; {_TEXTS['gravity'][manifest.scene['site']['gravity_is']]}"
     yield ""
 
 

@@ -35,7 +35,7 @@ from .plan import Plan
 
 SPARE_BITS = 64  # of forms, places and states beyond the run's own
 _BATCH = 64  # steps that are examined together
-NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
+_NOISE_BITS = 14  # last bits of a form that rounding may have spoilt
 _ROUNDING = (
     2.0**-46
 )  # of Bernstein's form in double, relative to the sum of the coefficients' sizes
@@ -76,7 +76,7 @@ class _SectionSearch:
         self.passages: list[_Passage] = []
         self._form = form
         self._bits = prec + SPARE_BITS
-        self._noise_bits = prec - NOISE_BITS
+        self._noise_bits = prec - _NOISE_BITS
         self._a = [_fixed(x, self._bits) for x in form.a]
         self._b = [_fixed(x, self._bits) for x in form.b]
         self._d = _fixed(form.d, self._bits)

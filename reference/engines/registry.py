@@ -20,7 +20,7 @@ from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
 from .plan import Engine, Pace, Plan, Report, Run
 
-SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
+_SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
 _REPORT_S = 0.2  # seconds between two reports of progress
 WORTH_A_PROCESS = 1.0  # estimated CPU seconds from which a process pays for its start
@@ -83,7 +83,7 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     from .passages import passages
 
     begun = process_time()
-    steps = engine.expanded(plan, plan.number.prec + SERIES_BITS)
+    steps = engine.expanded(plan, plan.number.prec + _SERIES_BITS)
     zeros = {**done.zeros, **passages(plan, steps)}
     return replace(done, zeros=zeros, cpu_s=done.cpu_s + process_time() - begun)
 

@@ -35,13 +35,13 @@ def carried(formulation: Formulation, start: Start, number: Callable[[Any], Any]
     if not names:
         return formulation
     values = zip(formulation.variables, start.state(formulation), strict=True)
-    return CarriedFormulation(
+    return _CarriedFormulation(
         formulation, {name: number(value) for name, value in values if name in names}
     )
 
 
 @dataclass(frozen=True)
-class CarriedFormulation:
+class _CarriedFormulation:
     """A formulation of which only some variables are integrated.
 
     Attributes:

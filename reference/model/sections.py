@@ -18,7 +18,7 @@ from .algebra import cross, dot, scale
 from .constants import Vector
 from .start import Start
 
-NOTHING: Vector = (0, 0, 0)
+_NOTHING: Vector = (0, 0, 0)
 
 
 class Form(NamedTuple):
@@ -37,7 +37,7 @@ def form_of(word: str, start: Start) -> Form:
         InputError: a gate through the rest position, and the scene has none.
     """
     if word == XDOT:
-        return Form(NOTHING, (1, 0, 0), 0)
+        return Form(_NOTHING, (1, 0, 0), 0)
     ctx, angle = start.ctx, to_mpf(azimuth_of(word) / 180, start.ctx)
     try:
         return form_along(
@@ -67,8 +67,8 @@ def form_along(word: str, along: Vector, pull: Vector, rest: Callable[[], Vector
     """Return the form of a section's word in any number type, from its direction, c and the rest position."""
     kind = word.split()[0]
     if kind == "turn":
-        return Form(NOTHING, along, 0)
+        return Form(_NOTHING, along, 0)
     if kind != "gate":
-        return Form(NOTHING, scale(-1, pull), 0, direction_of(word))
+        return Form(_NOTHING, scale(-1, pull), 0, direction_of(word))
     across = (-along[1], along[0], 0) if word.endswith("@0") else cross(along, pull)
-    return Form(across, NOTHING, 0 if word.endswith("@0") else dot(across, rest()))
+    return Form(across, _NOTHING, 0 if word.endswith("@0") else dot(across, rest()))

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from .inputs import GravityIs, azimuth_of
 from .texts import OR_INF, NotNegative, Number, Positive, Refused, checked, within
 
-MAX_DIGITS = 1000
+_MAX_DIGITS = 1000
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
@@ -21,7 +21,7 @@ Confirmation = Literal["whole", "sampled", "none"]  # how much of a proof heyoka
 CONFIRMATIONS: tuple[Confirmation, ...] = get_args(Confirmation)
 # Sections: the moments of a motion that are sought besides the transits, each named by a word of the scene.
 SECTION_SEPARATOR = "; "  # of several words in a text
-SECTION_WORDS = "highest, lowest, gate AZIMUTH, gate AZIMUTH@0 or turn AZIMUTH"
+_SECTION_WORDS = "highest, lowest, gate AZIMUTH, gate AZIMUTH@0 or turn AZIMUTH"
 _AZIMUTH = "-?[0-9]{1,3}(?:[.][0-9]{1,200})?"
 SECTION_WORD = f"highest|lowest|turn {_AZIMUTH}|gate {_AZIMUTH}(?:@0)?"  # as a regular expression
 
@@ -33,7 +33,7 @@ def _section_words(value: Any) -> Any:
         return None
     if not isinstance(listed, list | tuple) or not all(isinstance(word, str) for word in listed):
         raise Refused(
-            f"a list of words: {SECTION_WORDS}",
+            f"a list of words: {_SECTION_WORDS}",
             'Write each in quotes: sections = ["highest", "gate 45"].',
         )
     words = (" ".join(word.split()) for word in listed)
@@ -44,7 +44,7 @@ def _checked_sections(words: tuple[str, ...]) -> tuple[str, ...]:
     for word in words:
         if not re.fullmatch(SECTION_WORD, word, re.ASCII) or abs(azimuth_of(word)) > 360:
             advice = f"{word!r} is none; an azimuth is a decimal from -360 to 360 degrees, east to north."
-            raise Refused(SECTION_WORDS, advice)
+            raise Refused(_SECTION_WORDS, advice)
     if len(set(words)) < len(words):
         raise Refused("each section once", "Leave out the second one.")
     return words
@@ -121,7 +121,7 @@ class Release(SceneTable):
     azimuth_rate: Number | None = field(None, "degrees/s", "rate of the azimuth")
 
 
-_DIGITS = f"a whole number from 1 to {MAX_DIGITS}"
+_DIGITS = f"a whole number from 1 to {_MAX_DIGITS}"
 
 
 def _no_truth_value(value: Any) -> Any:
@@ -133,7 +133,7 @@ def _no_truth_value(value: Any) -> Any:
 Digits = Annotated[
     int,
     BeforeValidator(_no_truth_value),
-    checked(lambda digits: 1 <= digits <= MAX_DIGITS, _DIGITS),
+    checked(lambda digits: 1 <= digits <= _MAX_DIGITS, _DIGITS),
 ]
 
 
@@ -144,7 +144,7 @@ class RunTable(SceneTable):
         "86400", "s", "end of the motion"
     )
     grid_step: Positive = field("60", "s", "time between two rows of the grid")
-    digits: Digits = field(40, "", f"significant digits, at most {MAX_DIGITS}")
+    digits: Digits = field(40, "", f"significant digits, at most {_MAX_DIGITS}")
     level: Level = field(
         "confirmed", "", "what has to stand behind every digit; enclosed is a proof"
     )

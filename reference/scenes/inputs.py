@@ -9,7 +9,7 @@ from typing import Literal
 GravityIs = Literal["ellipsoid", "effective"]
 
 # of a grid step: times nearer than this differ only by the rounding of the inputs
-SAME_TIME = Fraction(1, 1 << 30)
+_SAME_TIME = Fraction(1, 1 << 30)
 # numbers of a site
 SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
 RELEASES = {
@@ -49,7 +49,7 @@ class Inputs:
         """
         whole = int(self.t_end / self.grid_step)
         times = [k * self.grid_step for k in range(whole + 1)]
-        if whole and self.t_end - times[-1] < self.grid_step * SAME_TIME:
+        if whole and self.t_end - times[-1] < self.grid_step * _SAME_TIME:
             times.pop()
         return [*times, self.t_end]
 

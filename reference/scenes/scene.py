@@ -26,9 +26,9 @@ from .shipped import data_root, scene_ids
 from .texts import Line, Widths, checked, explained
 
 MAX_ROWS = 2_000_000
-LEAST_T_END = Fraction(1, 10**300)
+_LEAST_T_END = Fraction(1, 10**300)
 
-LISTS = ("flags", "run.sections")  # fields that hold several words
+_LISTS = ("flags", "run.sections")  # fields that hold several words
 
 Reading = Literal["decimal", "binary64"]
 
@@ -146,7 +146,7 @@ def _check_single(values: Words) -> None:
     pairs = values.items() if isinstance(values, Mapping) else ()
     for key, value in pairs:
         name = full_name(str(key))
-        if _is_listed(value) and name not in LISTS:
+        if _is_listed(value) and name not in _LISTS:
             raise InputError(name, value, "a single value")
 
 
@@ -280,9 +280,9 @@ def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:
 
 def _wrong_in_run(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     run = scene.run
-    if exact.t_end < LEAST_T_END:
+    if exact.t_end < _LEAST_T_END:
         yield InputError(
-            "run.t_end", run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide"
+            "run.t_end", run.t_end, f"at least {float(_LEAST_T_END):g} s, which doubles can divide"
         )
     elif exact.t_end / exact.grid_step > MAX_ROWS:
         expected = f"at most {MAX_ROWS} grid times up to t_end"

@@ -10,7 +10,7 @@ from pathlib import Path
 from ..system.documents import json_document
 from ..system.workspace import replace_file
 
-INDEX = "index.json"
+_INDEX = "index.json"
 # MB that the golden function in doubles would take, of scenes that ship without it: the others fill the 12 MB there are
 WITHOUT_FUNCTION = {
     "creeping": 27,
@@ -19,14 +19,14 @@ WITHOUT_FUNCTION = {
     "meridian_plane": 0.9,
     "paris_30d": 114,
 }
-PACKAGE = Path(__file__).resolve().parents[1]
+_PACKAGE = Path(__file__).resolve().parents[1]
 # of what datasets hold, apart from the code's: docs/format.md says when it is raised
 DATA_VERSION = "1.1"
 
 
 def data_root() -> Path:
     """Return the folder that holds `scenes` and `golden`: in the installed package, or beside it in a checkout."""
-    return PACKAGE / "data" if (PACKAGE / "data").is_dir() else PACKAGE.parent / "data"
+    return _PACKAGE / "data" if (_PACKAGE / "data").is_dir() else _PACKAGE.parent / "data"
 
 
 def golden_root() -> Path:
@@ -36,7 +36,7 @@ def golden_root() -> Path:
 
 def in_checkout() -> bool:
     """Return whether scenes and golden datasets are those of a source checkout, which `generate` may replace."""
-    return data_root().parent != PACKAGE
+    return data_root().parent != _PACKAGE
 
 
 def scene_ids() -> list[str]:
@@ -50,7 +50,7 @@ def index() -> dict[str, dict[str, str]]:
     `seal` is that of its manifest, `options` are those of its command that say how it is made.
     """
     try:
-        return json_document(golden_root() / INDEX, INDEX)
+        return json_document(golden_root() / _INDEX, _INDEX)
     except FileNotFoundError:
         return {}
 
@@ -64,7 +64,7 @@ def keep_seal(name: str, seal: str, options: str) -> None:
     """Write the seal of a dataset that ships into `golden/index.json`, whole or not at all, one process at a time."""
     from filelock import FileLock
 
-    path = golden_root() / INDEX
+    path = golden_root() / _INDEX
     lock = path.with_suffix(".lock")
     with FileLock(lock):
         every = index() | {name: {"seal": seal, "options": options}}

@@ -24,8 +24,8 @@ from ..errors import InputError, did_you_mean
 from ..plain_text import is_plain
 from .inputs import as_read
 
-MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
-MAX_LENGTH = 2000  # characters of a number
+_MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
+_MAX_LENGTH = 2000  # characters of a number
 _EXPONENT_DIGITS = 9  # a Decimal can hold these; far above what is allowed
 _LONGEST_KEY = 80  # characters of a wrong key that a message quotes
 
@@ -58,12 +58,12 @@ def _as_text(value: object) -> object:
 
 
 def _decimal(text: str, info: ValidationInfo) -> str:
-    match = _DECIMAL.fullmatch(text) if len(text) <= MAX_LENGTH else None
+    match = _DECIMAL.fullmatch(text) if len(text) <= _MAX_LENGTH else None
     if match is None:
         raise Refused("a decimal number such as 67 or 7.292115e-5", _how_to_write(text))
     # zero as well: 0e999999999 is computed with a power of ten
-    if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
-        raise Refused(f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size")
+    if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > _MAX_EXPONENT:
+        raise Refused(f"a number between 1e-{_MAX_EXPONENT} and 1e{_MAX_EXPONENT} in size")
     try:
         as_read(text, _reading(info))
     except OverflowError:
@@ -83,7 +83,7 @@ def _how_to_write(text: str) -> str:
         return (
             "Write a decimal point, not a comma."
             if "," in text
-            else f"Write at most {MAX_LENGTH} characters."
+            else f"Write at most {_MAX_LENGTH} characters."
         )
     return (
         "Write the number alone, in SI units or degrees: 1200 for 20 min."
@@ -151,17 +151,17 @@ def _by_full_name(widths: object) -> object:
 def without_sign(width: str) -> str:
     """Return half of a width as a number: ±0.001, +-0.001, +/-0.001 and 0.001 mean the same."""
     text = width.strip()
-    return text.removeprefix(next(filter(text.startswith, SIGNS), "")).strip()
+    return text.removeprefix(next(filter(text.startswith, _SIGNS), "")).strip()
 
 
-SIGNS = ("±", "+-", "+/-")
-Width = Annotated[
+_SIGNS = ("±", "+-", "+/-")
+_Width = Annotated[
     Positive,
     BeforeValidator(lambda width: without_sign(width) if isinstance(width, str) else width),
     AfterValidator(lambda width: f"±{width}"),
     WithJsonSchema({**_SCHEMA, "pattern": rf"^(±|\+-|\+/-)?{_DECIMAL.pattern}$"}),
 ]
-Widths = Annotated[dict[str, Width], BeforeValidator(_by_full_name)]
+Widths = Annotated[dict[str, _Width], BeforeValidator(_by_full_name)]
 
 
 _TEXTS = ("id", "title", "source", "flags")

@@ -21,9 +21,9 @@ from .proof_steps import COEFFICIENT_BITS, Feed
 from .proving import first_radius
 from .solution import SAMPLED
 
-FINER_BITS = 16  # bits that the published run has more than the one it is compared with
+_FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 # precisions are multiples of this, so that small changes of the pilot's errors do not show
-ROUND_TO_BITS = 8
+_ROUND_TO_BITS = 8
 # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
 _SAMPLES = 3
 _HARDWARE_ENGINE = "heyoka"  # computes in double and long double
@@ -119,7 +119,7 @@ def published_plan(
     elif prec == DOUBLE.prec:
         bits = LONG_DOUBLE.prec
     else:
-        bits = prec + FINER_BITS
+        bits = prec + _FINER_BITS
     return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.zeros)
 
 
@@ -154,5 +154,5 @@ def drawn_intervals(scene: Scene) -> list[int]:
 
 
 def rounded_prec(prec: int) -> int:
-    """Round a precision up to a multiple of `ROUND_TO_BITS`."""
-    return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
+    """Round a precision up to a multiple of `_ROUND_TO_BITS`."""
+    return -(-prec // _ROUND_TO_BITS) * _ROUND_TO_BITS

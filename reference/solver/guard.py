@@ -26,7 +26,7 @@ from .solution import CrossCheck, Solution
 _USUAL_DIGITS = 7  # of the run with event detection
 _FINER_DIGITS = 27  # of a second one, if the first fails
 _MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
-SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
+_SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
 def guarded(solution: Solution, pilot: Pilot, report: Report | None = None) -> Solution:
@@ -138,7 +138,7 @@ def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
     least_xdot = Fraction(slope * shortest, unit**2)
     if not least_xdot:
         return _MOST_CHECK_PREC + 1
-    return pilot.prec + bits_in(pilot.cautious["vx"] / least_xdot) + SEEN_BITS
+    return pilot.prec + bits_in(pilot.cautious["vx"] / least_xdot) + _SEEN_BITS
 
 
 def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) -> Fraction:

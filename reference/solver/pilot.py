@@ -27,12 +27,12 @@ from ..scenes.scene import Scene
 from ..system.channel import ACTIVITY
 
 _PILOT_PREC = 47  # of the first exact run: three limbs
-PILOT_GAP_BITS = 22  # bits between it and the second: a limb
-LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
+_PILOT_GAP_BITS = 22  # bits between it and the second: a limb
+_LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
 # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
 MARGIN_BITS = 14
 # bits that the time of a day's worst conditioned transit loses against xdot
-CLOSE_TRANSIT_BITS = 12
+_CLOSE_TRANSIT_BITS = 12
 # safety factor from the pilot's error to that of a run which no second one checks
 ESTIMATE_FACTOR = 16
 _LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
@@ -45,7 +45,7 @@ STILL_PREC = 128  # bits from which a velocity that is exactly zero is that of r
 ZERO_PREC = 512
 MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_RAISES = 6  # of the precision, before giving up
-MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
+_MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
 _PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
 _SETTLED = 10  # with drag γ the pace may change until t = _SETTLED/γ
 
@@ -121,7 +121,7 @@ class Pilot:
                 needed = max(needed, bits_in(self.largest[name] / unit) + MARGIN_BITS)
         if t_end is not None:
             ratio = expected["vx"] * 10 ** decimals_for(t_end, digits)
-            needed = max(needed, self.prec + bits_in(ratio) + CLOSE_TRANSIT_BITS)
+            needed = max(needed, self.prec + bits_in(ratio) + _CLOSE_TRANSIT_BITS)
         return needed
 
 
@@ -150,7 +150,7 @@ def run_pilot(
     ACTIVITY.send("measuring how errors grow")
     if len(times) <= _LEAST_TIMES:
         times = tuple(times[-1] * k / _LEAST_TIMES for k in range(_LEAST_TIMES + 1))
-    pair = _PilotPair(inputs, times, engine, _PILOT_PREC, _PILOT_PREC + PILOT_GAP_BITS)
+    pair = _PilotPair(inputs, times, engine, _PILOT_PREC, _PILOT_PREC + _PILOT_GAP_BITS)
     if hardware:
         pair = replace(pair, prec=DOUBLE.prec, fine_prec=LONG_DOUBLE.prec, hardware=True)
 
@@ -158,7 +158,7 @@ def run_pilot(
     last_prec = 0
     good_until = Fraction(0)
     steps = 0
-    while pair.fine_prec <= MAX_PREC and effort(steps, pair.fine_prec) <= MAX_STEPS:
+    while pair.fine_prec <= MAX_PREC and effort(steps, pair.fine_prec) <= _MAX_STEPS:
         runs = pair.run(samples, pace)
         pace = None  # the first pair has shown it
         steps = runs.coarse.steps
@@ -172,7 +172,7 @@ def run_pilot(
         )
         last_prec = pair.prec
         prec = max(2 * LONG_DOUBLE.prec, 2 * pair.prec, extrapolated)
-        pair = _PilotPair(inputs, times, engine, prec, prec + LATER_GAP_BITS)
+        pair = _PilotPair(inputs, times, engine, prec, prec + _LATER_GAP_BITS)
     raise UnreachableError(
         f"Rounding grows so fast that runs keep no digit beyond t = {float(good_until):.3g} s; "
         f"to the end it takes about {pair.prec} bits, which is out of reach.",
@@ -357,7 +357,7 @@ def effort(steps: int, prec: int) -> int:
 
 def out_of_reach(steps: int, prec: int) -> bool:
     """Return whether a run of `steps` steps in `prec` bits costs more than the solver begins."""
-    return prec > MAX_PREC or effort(steps, prec) > MAX_STEPS
+    return prec > MAX_PREC or effort(steps, prec) > _MAX_STEPS
 
 
 def check_reach(steps: int, prec: int, digits: int, advice: str = "") -> None:
@@ -381,7 +381,7 @@ class Pace:
         end: end of the run in s.
 
     Raises:
-        UnreachableError: at that pace the run takes more than `MAX_STEPS` steps.
+        UnreachableError: at that pace the run takes more than `_MAX_STEPS` steps.
     """
 
     def __init__(self, inputs: Inputs, end: Fraction) -> None:
@@ -401,9 +401,9 @@ class Pace:
         self._last_t = t
 
         needed = steps + (self._end - t) * pace
-        self._watching = needed > MAX_STEPS
-        if self._watching and (steps >= MAX_STEPS or self._settled(t)):
-            most = 0.95 * (t + (MAX_STEPS - steps) / pace)
+        self._watching = needed > _MAX_STEPS
+        if self._watching and (steps >= _MAX_STEPS or self._settled(t)):
+            most = 0.95 * (t + (_MAX_STEPS - steps) / pace)
             advice = f"Ask for a shorter run (run.t_end up to about {most:.2g}) or less drag."
             raise UnreachableError(_reason(self._inputs, needed, pace), advice)
 
@@ -418,7 +418,7 @@ def _reason(inputs: Inputs, needed: float, pace: float) -> str:
 
     Stiff is a motion whose rates are far apart in size.
     """
-    altogether = f"{needed:.1e} steps, and at most {MAX_STEPS:.1e} are taken."
+    altogether = f"{needed:.1e} steps, and at most {_MAX_STEPS:.1e} are taken."
     start = Start.of(inputs, LONG_DOUBLE.prec)
     swing = float(start.ctx.norm(start.k.pull)) ** 0.5
     drag = float(inputs.drag)

@@ -21,12 +21,12 @@ from ..system.workers import Emit, Worker
 
 # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 COEFFICIENT_BITS = 20
-BATCH = 32  # steps sent at once
+_BATCH = 32  # steps sent at once
 # A step of heyoka is as long as its epsilon allows: one radius that encloses such a run is up to 10
 # bits wider than `MARGIN_BITS` assumes, and a proof that begins with too few bits is made a second
 # time. Columns begin with too few bits as well, but the shipped bytes of `inverted_rest` depend on
 # that.
-HEYOKA_BITS = 8
+_HEYOKA_BITS = 8
 
 _Sent = tuple[TaylorStep | Run, float]
 
@@ -99,7 +99,7 @@ class Feed:
     def lost(self, bits: int) -> int:
         """Return how many bits a run in `bits` bits loses besides those that a proof allows for."""
         engine = fastest(bits - COEFFICIENT_BITS, self._engine, self._count, proof=True)
-        return HEYOKA_BITS if engine.name == "heyoka" else 0
+        return _HEYOKA_BITS if engine.name == "heyoka" else 0
 
     def finished(self) -> Run:
         """Exhaust the steps and return the run, with its states at `times`."""
@@ -154,5 +154,5 @@ def _steps_and_run(
 
 def _send(emit: Emit, engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> None:
     items = _steps_and_run(engine, inputs, times, prec)
-    while batch := list(islice(items, BATCH)):
+    while batch := list(islice(items, _BATCH)):
         emit(batch)

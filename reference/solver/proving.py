@@ -38,7 +38,7 @@ from .solution import (
 # bits by which a swing may die down: beyond them balls are made smaller step by step
 MOST_DIED = 1024
 # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
-ROUNDING_BITS = 20
+_ROUNDING_BITS = 20
 _ROUNDING_TRIES = 8  # radii that are tried before giving up
 # the next radius is smaller by this factor at least, and so small that the widest undecided number
 # is known to one part in _SPARE of its last digit
@@ -47,7 +47,7 @@ _SPARE = 2**20
 # of the last digit: a number that lies so near to the middle of two decimals is a tie
 _TIE = Fraction(1, 2**40)
 # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
-TABLE_BITS = 64
+_TABLE_BITS = 64
 # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
 EVALUATION_BITS = 12
 
@@ -139,7 +139,7 @@ def _solution(task: ProofTask, enclosed: Any, approximant: Run) -> Solution:
     Raises:
         IntegrationError: a state of the approximant lies outside its ball.
     """
-    bits = enclosed.bits + TABLE_BITS
+    bits = enclosed.bits + _TABLE_BITS
     times = tuple(task.scene.exact.grid)
     grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
     zeros = {}
@@ -189,7 +189,7 @@ def first_radius(scene: Scene, pilot: Pilot) -> Fraction:
     _, position, _ = sorted(decimals[name] for name in POSITION)
     _, velocity, _ = sorted(decimals[name] for name in VELOCITY)
     unit = Fraction(1, 10 ** max(position, velocity))
-    return unit / (1 << ROUNDING_BITS + second_order_bits(scene, pilot))
+    return unit / (1 << _ROUNDING_BITS + second_order_bits(scene, pilot))
 
 
 def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:

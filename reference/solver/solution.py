@@ -234,7 +234,7 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
     return digits
 
 
-def tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
+def _tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
     """Return the tables of grid, transits and sections, each with the decimals of its columns."""
     tables = [(solution.grid, grid_decimals(solution))]
     for word, zeros in solution.zeros.items():
@@ -266,7 +266,7 @@ def check_decided(solution: Solution) -> None:
 
     The numbers of the release that the scene itself gives are exact, and rounded as they are.
     """
-    (grid, decimals), *zeros = tables_of(solution)
+    (grid, decimals), *zeros = _tables_of(solution)
     widest = [grid.undecided(decimals, solution.scene.exact.released)]
     widest += [table.undecided(places) for table, places in zeros]
     undecided = [number for number in widest if number]

@@ -41,7 +41,7 @@ _HALF_ULP = 2.0**-53  # of a number just above 1, relative
 _GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
 _HEIGHT = _FACTOR * _LEAST_ULPS * _HALF_ULP  # what rounding may do to a height over the cord length
 MOVED = RunOptions(transits=False, apsides=False, moved=1)
-MOVED_BACK = RunOptions(transits=False, apsides=False, moved=-1)
+_MOVED_BACK = RunOptions(transits=False, apsides=False, moved=-1)
 SECTION_RUN = RunOptions(apsides=False, times=True, form=True)
 
 
@@ -100,7 +100,7 @@ def errors_by_moved_runs(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Erro
     if not len(again):
         return estimated, stopped
 
-    back = engine.solve(rows[again], MOVED_BACK)
+    back = engine.solve(rows[again], _MOVED_BACK)
     stopped[again] |= back.fate == STOPPED
     moved = _farthest(rows, run, moved, back, again)
     return errors(rows, run, moved, np.where(wild, _WILD_FACTOR, _FACTOR)), stopped

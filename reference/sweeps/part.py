@@ -24,8 +24,8 @@ from .row_constants import engine_rows
 
 Promote = Callable[..., Promoted]
 
-DOUBTFUL_REASON = "The number of transits or passages, or the error, is not decided in double."
-STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
+_DOUBTFUL_REASON = "The number of transits or passages, or the error, is not decided in double."
+_STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
 _KNOWN = ("row", "status", "reason", "level")  # columns that a row has which failed
 
 
@@ -183,7 +183,7 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
         reasons |= _side_by_side(request, part, places, rows)
 
     for place, reason in sorted(reasons.items()):
-        if reason == STOPPED_REASON:
+        if reason == _STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
         elif promote is None:
             part.fail(place, Status.DOUBTFUL, f"{reason} It takes more digits.".strip())
@@ -217,7 +217,7 @@ def _promote(request: Request, part: Part, place: int, reason: str, promote: Pro
     part.tally.promoted += 1
     part.tally.promoted_s += result.cpu_s + time.thread_time() - before
     if result.failure:
-        status = Status.DOUBTFUL if reason == DOUBTFUL_REASON else Status.UNREACHABLE
+        status = Status.DOUBTFUL if reason == _DOUBTFUL_REASON else Status.UNREACHABLE
         part.fail(place, status, f"{reason} {result.failure}".strip())
     else:
         part.fill(place, {**result.values, "status": Status.OK.value, "reason": None})
@@ -259,8 +259,8 @@ def _by_engine(
         unsure |= undecided
 
     stopped = stopped | (run.fate == STOPPED)
-    reasons = dict.fromkeys(places[unsure].tolist(), DOUBTFUL_REASON)
-    return reasons | dict.fromkeys(places[stopped].tolist(), STOPPED_REASON)
+    reasons = dict.fromkeys(places[unsure].tolist(), _DOUBTFUL_REASON)
+    return reasons | dict.fromkeys(places[stopped].tolist(), _STOPPED_REASON)
 
 
 def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:

@@ -36,7 +36,7 @@ _AUDIT_DIGITS = 28  # at about 110 bits
 _MORE_DIGITS = 11
 
 
-def outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
+def _outcomes_of(solution: Solution, rows: Rows) -> tuple[Outcomes, Errors]:
     """Return the results of a solved row and their errors, as an engine for many rows does.
 
     Those of the swing are there if the solution has its highest points.
@@ -162,7 +162,7 @@ def _solved(scene: Scene, digits: int, swing: bool) -> Solution:
 def _values(request: Request, row: int, solution: Solution) -> dict[str, Any]:
     """Return the columns of a row that was solved."""
     rows = engine_rows(request.scene, request.table, [row])
-    run, errors = outcomes_of(solution, rows)
+    run, errors = _outcomes_of(solution, rows)
     columns, _ = columns_of(rows, run, errors)
     for word in request.sections:
         columns |= _columns_of_section(word, solution)

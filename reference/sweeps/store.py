@@ -27,7 +27,7 @@ from .request import Request
 
 PLAN = "plan.json"
 SUMMARY = "summary.json"
-ROWS = "rows"
+_ROWS = "rows"
 TRANSITS = "transits"
 _PARQUET = ("pyarrow", "sweep", "--out", "a folder of Parquet files")  # arguments of `needed`
 _MOST_BYTES = 1 << 40  # of a part: the limit is that of a disk
@@ -120,9 +120,9 @@ class Store:
     @property
     def _kinds(self) -> tuple[str, ...]:
         """The kinds of files that each part has."""
-        return (ROWS, TRANSITS) if self.request.run_options.times else (ROWS,)
+        return (_ROWS, TRANSITS) if self.request.run_options.times else (_ROWS,)
 
-    def path(self, part: int, kind: str = ROWS) -> Path:
+    def path(self, part: int, kind: str = _ROWS) -> Path:
         """Return the file of a part."""
         return self.folder / kind / f"part-{part:08d}.parquet"
 
@@ -154,7 +154,7 @@ class Store:
             InputError: it cannot be written.
         """
         tables = {
-            ROWS: (self.request.columns, solved.columns),
+            _ROWS: (self.request.columns, solved.columns),
             TRANSITS: (TRANSIT_COLUMNS, solved.transits),
         }
         for kind in self._kinds:
@@ -178,12 +178,12 @@ class Store:
         """
         own = {self.path(part, kind) for kind in self._kinds for part in range(self.request.parts)}
         present: set[Path] = set()
-        for kind in (ROWS, TRANSITS):
+        for kind in (_ROWS, TRANSITS):
             present.update((self.folder / kind).glob("[!.]*"))
         return sorted(str(path.relative_to(self.folder)) for path in present - own)
 
     def read(
-        self, names: list[str] | None = None, kind: str = ROWS, parts: Iterable[int] | None = None
+        self, names: list[str] | None = None, kind: str = _ROWS, parts: Iterable[int] | None = None
     ) -> dict[str, Any]:
         """Return columns of parts as arrays, one below the other: all if none are named.
 
@@ -210,7 +210,7 @@ def _check_empty(folder: Path) -> None:
 
 def _is_foreign(path: Path) -> bool:
     """Return whether a sweep that was killed as it began cannot have left a file."""
-    return path.name not in (ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
+    return path.name not in (_ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
 
 
 def _write_json(path: Path, document: dict[str, Any]) -> None:

@@ -24,7 +24,7 @@ from .system import keep_on_disk
 # faster.) Levels above 1 give no faster step.
 _SHORT_RUN = 20_000  # in hardware numbers
 _SHORT_WORK = 4e9  # beyond them: times the cube of the bits
-KEPT = 24  # integrators, of 1 to 5 MB each, that are kept for further runs of their equations
+_KEPT = 24  # integrators, of 1 to 5 MB each, that are kept for further runs of their equations
 # type of numbers, and that of arrays
 _HARDWARE: dict[NumberType, Any] = {
     DOUBLE: (float, np.float64),
@@ -112,7 +112,7 @@ class Numbers:
         return states, int(steps)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=_KEPT)
 def _compiled(
     number: NumberType, system: Any, varied: bool = False, events: Any = (), **options: Any
 ) -> Any:

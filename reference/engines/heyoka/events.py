@@ -40,10 +40,10 @@ if TYPE_CHECKING:
     from .conversions import Numbers
     from .stepper import Stepper, Zero
 
-MAX_RETRIES = 6  # how often steps are taken again before the run is given up
+_MAX_RETRIES = 6  # how often steps are taken again before the run is given up
 # a step taken again is cut by this factor: no simple ratio, so that no edge returns
-SHORTER = Fraction(79, 128)
-AT_ONCE = 100  # steps that are checked together
+_SHORTER = Fraction(79, 128)
+_AT_ONCE = 100  # steps that are checked together
 
 
 class _Step(NamedTuple):
@@ -67,7 +67,7 @@ class _Step(NamedTuple):
     directions: list[int]
 
 
-def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
+def _quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     """Return a time δ in s such that xdot has no zero in (0, δ], for a run whose first variable is x over l.
 
     Let xdot = t^m (b_m + b_{m+1} t + …) with m = `multiplicity`. If |b_m| > Σ |b_k| δ^(k-m), summed over k > m, no
@@ -108,7 +108,7 @@ def march(
     states: list[Any] = [stepper.state]
     zeros: list[Zero] = []
     if multiplicity:
-        stepper.advance(min(stepper.numbers.of(quiet_start(stepper, multiplicity)), end))
+        stepper.advance(min(stepper.numbers.of(_quiet_start(stepper, multiplicity)), end))
         stepper.sample(times, states)
     steps: list[_Step] = []  # the last one that was checked, and those after it
     retries, limit = 0, end - stepper.time
@@ -120,15 +120,15 @@ def march(
         steps.append(_Step(mark, *counts, stepper.time, *stepper.last_of_x(), directions))
         zeros += step_zeros
         stepper.sample(times, states)
-        if len(steps) > AT_ONCE or retries or stepper.time >= end:
+        if len(steps) > _AT_ONCE or retries or stepper.time >= end:
             if (wrong := _first_contradiction(steps, stepper.numbers)) is not None:
                 i, contradiction = wrong
                 retries += 1
-                if retries > MAX_RETRIES:
+                if retries > _MAX_RETRIES:
                     raise IntegrationError(
                         f"zeros of xdot near t = {float(steps[i].end)} s: {contradiction}.", AT_REST
                     )
-                limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(SHORTER**retries)
+                limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(_SHORTER**retries)
                 before = steps[max(i - 1, 0)]
                 stepper.back(before.mark)
                 del states[before.states :], zeros[before.zeros :], steps[max(i - 1, 0) :]

@@ -32,12 +32,12 @@ from .stepper import Stepper, Zero
 _SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits
 _DECAYS = 5.0  # with a fast drag γ the step size is at most _DECAYS MOST_TURN/γ
 # mantissa of a step size: equal steps share their scaled constants, and times stay short
-STEP_BITS = 6
+_STEP_BITS = 6
 # of the span: the longest step of a run that takes other steps, if one would do
 _OTHER_STEPS = Fraction(5, 8)
-UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
+_UNSEEN_BITS = 8  # vx of less than this many bits above a run's epsilon has no sure sign in it
 # results carry this many bits below the run's epsilon, for swings much smaller than the cord
-SMALL_SWING_BITS = 80
+_SMALL_SWING_BITS = 80
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
@@ -104,12 +104,12 @@ def _next_step(h: Fraction, series: Any, bits: int) -> Fraction:
 
 
 def _few_bits(h: float) -> Fraction:
-    """Return a little less than h, with a mantissa of `STEP_BITS` bits."""
+    """Return a little less than h, with a mantissa of `_STEP_BITS` bits."""
     mantissa, exponent = math.frexp(h)
-    return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
+    return Fraction(int(mantissa * 2**_STEP_BITS)) * Fraction(2) ** (exponent - _STEP_BITS)
 
 
-class EarlyZero(NamedTuple):
+class _EarlyZero(NamedTuple):
     """A zero of xdot too near t = 0 for a run to see.
 
     Attributes:
@@ -121,7 +121,7 @@ class EarlyZero(NamedTuple):
     direction: int
 
 
-def _early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
+def _early_zero(start: Start, precision_bits: int) -> _EarlyZero | None:
     """Return the zero of xdot near a release whose vx is less than a run's rounding.
 
     None if vx is zero, or if it is more.
@@ -131,12 +131,12 @@ def _early_zero(start: Start, precision_bits: int) -> EarlyZero | None:
     """
     vx, *others = start.v
     scale = max(start.rate, start.fastest_rate, *(float(abs(speed)) for speed in others))
-    if vx == 0 or abs(vx) > start.ctx.ldexp(scale, UNSEEN_BITS - precision_bits):
+    if vx == 0 or abs(vx) > start.ctx.ldexp(scale, _UNSEEN_BITS - precision_bits):
         return None
     ax = acceleration(start.n, start.v, start.k)[0]
-    if abs(ax) <= start.ctx.ldexp(scale * scale, UNSEEN_BITS - precision_bits):
+    if abs(ax) <= start.ctx.ldexp(scale * scale, _UNSEEN_BITS - precision_bits):
         return None
-    return EarlyZero(-vx / ax, 1 if ax > 0 else -1)
+    return _EarlyZero(-vx / ax, 1 if ax > 0 else -1)
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
@@ -215,7 +215,7 @@ def result(
         zeros: of xdot; None if not looked for.
         started: `time.process_time()` when the steps began.
     """
-    bits = plan.number.prec + SMALL_SWING_BITS
+    bits = plan.number.prec + _SMALL_SWING_BITS
     return Run(
         plan=plan,
         grid=stepper.model.table(states, bits),

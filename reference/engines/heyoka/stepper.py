@@ -23,7 +23,7 @@ from .system import system_of
 
 _STEPS_PER_REPORT = 64  # steps between two reports of progress
 # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
-TIME_BITS = 64
+_TIME_BITS = 64
 
 
 class Zero(NamedTuple):
@@ -184,7 +184,7 @@ class Stepper:
         return np.array([powers[:-1]] * half + [powers[1:]] * half)
 
     def _exact_time(self) -> Fraction:
-        bits = 2 * self.number.prec + TIME_BITS
+        bits = 2 * self.number.prec + _TIME_BITS
         high, low = self.numbers.fixed(np.array(self._ta.dtime), bits)
         return Fraction(high + low, 1 << bits)
 

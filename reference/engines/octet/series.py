@@ -33,7 +33,7 @@ from ..simd.lanes import (
 from .rows import FORM, PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
 
 MOST_ORDER = 24  # even, as two orders are computed at a time
-LONGEST = 3.0  # log2 of the longest step in units of time, where nothing changes
+_LONGEST = 3.0  # log2 of the longest step in units of time, where nothing changes
 
 
 class LaneSeries(NamedTuple):
@@ -212,7 +212,7 @@ def step_length(c: LaneSeries, order: int) -> Any:
     # -log2 of the length by either coefficient, and the larger of the two
     by_last = log2_of(_size(c, order) / scale) * spread(1.0 / order)
     by_last_but_one = log2_of(_size(c, order - 1) / scale) * spread(1.0 / (order - 1))
-    inverse = larger(larger(by_last, by_last_but_one), spread(-LONGEST))
+    inverse = larger(larger(by_last, by_last_but_one), spread(-_LONGEST))
     return exp2_of(spread(0.0) - inverse)
 
 

@@ -78,7 +78,7 @@ class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, lanes_type, _VECTOR)
 
 
-def instruction(generator: Any) -> Any:
+def _instruction(generator: Any) -> Any:
     """Register a generator of LLVM instructions as a compiled function; untyped for a type checker."""
     return _extending.intrinsic(generator)
 
@@ -117,7 +117,7 @@ def _store(context: Any, builder: Any, array_type: Any, array: Any, index: Any, 
     write.align = 8
 
 
-def lanewise(write: Callable[..., Any], taken: Any = Lanes, result: Any = Lanes) -> Any:
+def _lanewise(write: Callable[..., Any], taken: Any = Lanes, result: Any = Lanes) -> Any:
     """Register `write(builder, *vectors)`, which returns eight doubles, as a compiled function.
 
     Args:
@@ -133,10 +133,10 @@ def lanewise(write: Callable[..., Any], taken: Any = Lanes, result: Any = Lanes)
 
         return result(*[taken] * len(vectors)), generate
 
-    return instruction(typed)
+    return _instruction(typed)
 
 
-@instruction
+@_instruction
 def load(_: Any, array: Any, index: Any) -> Any:
     """Return eight elements of a flat array from `index` on."""
 
@@ -146,7 +146,7 @@ def load(_: Any, array: Any, index: Any) -> Any:
     return Lanes(array, types.intp), generate
 
 
-@instruction
+@_instruction
 def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     """Write eight elements of a flat array from `index` on."""
 
@@ -157,7 +157,7 @@ def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     return types.void(array, types.intp, Lanes), generate
 
 
-@instruction
+@_instruction
 def get_row(_: Any, array: Any, row: Any) -> Any:
     """Return a row of eight elements of a flat array: those from `LANES * row` on."""
 
@@ -168,7 +168,7 @@ def get_row(_: Any, array: Any, row: Any) -> Any:
     return Lanes(array, types.intp), generate
 
 
-@instruction
+@_instruction
 def set_row(_: Any, array: Any, row: Any, value: Any) -> Any:
     """Write a row of eight elements of a flat array: those from `LANES * row` on."""
 
@@ -185,7 +185,7 @@ def _first_of(builder: Any, row: Any) -> Any:
     return builder.mul(row, ir.Constant(row.type, LANES))
 
 
-@partial(lanewise, taken=types.float64)
+@partial(_lanewise, taken=types.float64)
 def spread(builder: Any, value: Any) -> Any:
     """Return the same double in every lane."""
     return builder.shuffle_vector(
@@ -193,50 +193,50 @@ def spread(builder: Any, value: Any) -> Any:
     )
 
 
-@lanewise
+@_lanewise
 def plus_product(builder: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, where both operations are exact: the compiler may fuse them."""
     return builder.fadd(total, builder.fmul(a, b, flags=_FUSE), flags=_FUSE)
 
 
-@lanewise
+@_lanewise
 def fma(builder: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, rounded once, also where the processor has no such instruction."""
     return _by_name(builder, "fma", a, b, total)
 
 
-@lanewise
+@_lanewise
 def nearest(builder: Any, a: Any) -> Any:
     """Return each lane rounded to the nearest integer."""
     return _by_name(builder, "rint", a)
 
 
-@partial(lanewise, result=types.boolean)
+@partial(_lanewise, result=types.boolean)
 def occupied(builder: Any, a: Any) -> Any:
     """Return true if any lane is not zero."""
     whole = builder.bitcast(builder.fcmp_unordered("!=", a, _ZERO), ir.IntType(LANES))
     return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
 
-@lanewise
+@_lanewise
 def at_least(builder: Any, a: Any, b: Any) -> Any:
     """Return 1 in each lane where a >= b, else 0."""
     return builder.uitofp(builder.fcmp_ordered(">=", a, b), _VECTOR)
 
 
-@lanewise
+@_lanewise
 def magnitude(builder: Any, a: Any) -> Any:
     """Return |a| in each lane."""
     return _by_name(builder, "fabs", a)
 
 
-@lanewise
+@_lanewise
 def larger(builder: Any, a: Any, b: Any) -> Any:
     """Return the larger of a and b in each lane, b where one is not a number."""
     return builder.select(builder.fcmp_ordered(">", a, b), a, b)
 
 
-@lanewise
+@_lanewise
 def where(builder: Any, truth: Any, a: Any, b: Any) -> Any:
     """Return a in each lane where `truth` is not zero, else b."""
     return builder.select(builder.fcmp_unordered("!=", truth, _ZERO), a, b)
@@ -248,7 +248,7 @@ _SCALE = 2.0**52
 _BIAS = 1023.0
 
 
-@lanewise
+@_lanewise
 def log2_of(builder: Any, a: Any) -> Any:
     """Return log2 of positive numbers, with an error of at most 0.09: exact for powers of two, linear between them."""
     whole = builder.sitofp(builder.bitcast(a, _WHOLES), _VECTOR)
@@ -256,7 +256,7 @@ def log2_of(builder: Any, a: Any) -> Any:
     return builder.fsub(scaled, ir.Constant(_VECTOR, [_BIAS] * LANES))
 
 
-@lanewise
+@_lanewise
 def exp2_of(builder: Any, a: Any) -> Any:
     """Return the inverse of `log2_of`, for numbers between -1022 and 1023."""
     raised = builder.fadd(a, ir.Constant(_VECTOR, [_BIAS] * LANES))
@@ -274,11 +274,11 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
         return builder.shuffle_vector(a, _ZERO, places)
 
     shuffle.__name__ = shuffle.__qualname__ = name
-    return lanewise(shuffle)
+    return _lanewise(shuffle)
 
 
 def _binary(operation: Any, name: str) -> None:
-    @lanewise
+    @_lanewise
     def apply(builder: Any, a: Any, b: Any) -> Any:
         return getattr(builder, name)(a, b)
 
