@@ -21,10 +21,10 @@ import typer
 from ..plain_text import plain, terminal_of
 from ..system.channel import ACTIVITY, ANNOUNCEMENTS
 
-WINDOW_S = 5.0  # the rate is measured over the last seconds
-LEAST_S = 2.0  # shortest time over which a rate is measured
-NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
-NEXT_NOTICE = 2.0  # each later notice comes after this factor of time
+_WINDOW_S = 5.0  # the rate is measured over the last seconds
+_LEAST_S = 2.0  # shortest time over which a rate is measured
+_NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
+_NEXT_NOTICE = 2.0  # each later notice comes after this factor of time
 
 
 class Move(Protocol):
@@ -74,7 +74,7 @@ class Work:
         if completed < self.completed:  # it started again, in a higher precision
             self._samples.clear()
         self._samples.append(_Sample(time.monotonic(), completed))
-        while len(self._samples) > 2 and self._samples[1].time_s <= self._last.time_s - WINDOW_S:
+        while len(self._samples) > 2 and self._samples[1].time_s <= self._last.time_s - _WINDOW_S:
             self._samples.popleft()
 
     @property
@@ -112,7 +112,7 @@ class Work:
         done = self._last.completed - first.completed
         measured_s = self._last.time_s - first.time_s
         waited_s = time.monotonic() - self._last.time_s
-        if done <= 0 or measured_s + waited_s < LEAST_S:
+        if done <= 0 or measured_s + waited_s < _LEAST_S:
             return None
         units_left = self.total - self._last.completed
         if waited_s > measured_s:  # it has become slower
@@ -158,13 +158,13 @@ class _Notices:
     """When the next line is due, in s since the work began."""
 
     def __init__(self) -> None:
-        self.next_s = NOTICE_S
+        self.next_s = _NOTICE_S
 
     def is_due(self, elapsed_s: float) -> bool:
         """Return whether a line is due; if so, the next one comes later."""
         if elapsed_s <= self.next_s:
             return False
-        self.next_s = NEXT_NOTICE * elapsed_s
+        self.next_s = _NEXT_NOTICE * elapsed_s
         return True
 
 

@@ -10,7 +10,7 @@ from ..plan import Engine, Plan
 from .size import LEAST_PREC, MOST_PREC
 
 # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
-STEP_S = 1.2e-5
+_STEP_S = 1.2e-5
 
 
 class Limbs(Engine):
@@ -40,7 +40,7 @@ class Limbs(Engine):
 
     def expected_s(self, steps: int, prec: int) -> float:
         """Return about how many CPU seconds a run takes that would be `steps` steps in double."""
-        return steps * STEP_S * (prec / 160) ** 2
+        return steps * _STEP_S * (prec / 160) ** 2
 
 
 ENGINE = Limbs()

@@ -32,9 +32,9 @@ _LIMBS = Path(__file__).parent
 _SOURCES = [*_LIMBS.glob("*.py"), *_LIMBS.parent.glob("simd/*.py")]
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 # in `MarchState.counts`
-TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)
+TIME, _LENGTH, _MULTIPLICITY, _SIGN, STEPS, _ROWS, ZEROS, _SCALED, _NEXT = range(9)
 # why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot undecided
-GOOD, FULL, STUCK, DOUBTFUL = range(4)
+GOOD, _FULL, STUCK, DOUBTFUL = range(4)
 
 
 class MarchState(NamedTuple):
@@ -82,8 +82,8 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: LimbMod
     order = model.order
     limb_count = model.limb_count
     counts = np.zeros(9, dtype=np.int64)
-    counts[LENGTH] = first
-    counts[MULTIPLICITY] = multiplicity
+    counts[_LENGTH] = first
+    counts[_MULTIPLICITY] = multiplicity
     now = aligned(len(start))
     now[:] = start
     terms = LinearTerms(*(aligned(LANES * (limb_count + 2)) for _ in LinearTerms._fields))
@@ -100,16 +100,16 @@ def _write_states(state: MarchState, model: LimbModel, out: Outputs) -> None:
     place = state.search.place
     limb_count = model.limb_count
     start = counts[TIME]
-    m = counts[LENGTH]
-    while counts[ROWS] < len(out.whole) and out.whole[counts[ROWS]] < start + m:
-        i = counts[ROWS]
+    m = counts[_LENGTH]
+    while counts[_ROWS] < len(out.whole) and out.whole[counts[_ROWS]] < start + m:
+        i = counts[_ROWS]
         place[:] = 0.0
         for q in range(limb_count):
             place[q] = out.remainders[i * limb_count + q]
         divide_place(place, out.whole[i] - start, m, limb_count)
         evaluate(step.rows, step.s, place, model.order, limb_count)
         to_cartesian(out.states, i * limb_count * LANES, step, model, m)
-        counts[ROWS] += 1
+        counts[_ROWS] += 1
 
 
 @merged
@@ -119,7 +119,7 @@ def _write_zeros(state: MarchState, model: LimbModel, out: Outputs) -> bool:
     z = state.search
     limb_count = model.limb_count
     after = int(np.sign(xdot_of(state.now, state.step.s, model.terms.turn, DOUBLED, limb_count)))
-    if not bracket_zeros(z, state.step, counts[SIGN], after, counts[MULTIPLICITY], model):
+    if not bracket_zeros(z, state.step, counts[_SIGN], after, counts[_MULTIPLICITY], model):
         return False
     for i in range(z.number[0]):
         if not polish(z, i, state.step, model):
@@ -128,12 +128,12 @@ def _write_zeros(state: MarchState, model: LimbModel, out: Outputs) -> bool:
         for q in range(limb_count):
             out.places[n * limb_count + q] = z.place[q]
         start = n * limb_count * LANES
-        to_cartesian(out.zero_states, start, state.step, model, counts[LENGTH])
+        to_cartesian(out.zero_states, start, state.step, model, counts[_LENGTH])
         out.moments[3 * n] = counts[TIME]
-        out.moments[3 * n + 1] = counts[LENGTH]
+        out.moments[3 * n + 1] = counts[_LENGTH]
         out.moments[3 * n + 2] = z.direction[i]
         counts[ZEROS] += 1
-    counts[SIGN] = after
+    counts[_SIGN] = after
     return True
 
 
@@ -142,7 +142,7 @@ def _write_series(state: MarchState, model: LimbModel, out: Outputs, i: int) -> 
     """Write start, length and coefficients of step i of a call, if there is room."""
     if 2 * i < len(out.steps):
         out.steps[2 * i] = state.counts[TIME]
-        out.steps[2 * i + 1] = state.counts[LENGTH]
+        out.steps[2 * i + 1] = state.counts[_LENGTH]
         row_count = (model.order + 1) * model.limb_count
         for j in range(row_count):
             set_row(out.series, i * row_count + j, get_row(state.step.s.c, j))
@@ -158,27 +158,27 @@ def march(
     limb_count = model.limb_count
     for i in range(steps):
         if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
-            return FULL
+            return _FULL
         if not _step_coefficients(state, model):
             return STUCK
         sum_series(state.step.rows, s, model.order, limb_count)
         if seek and counts[STEPS] == 0:
             # the first coefficient of xdot that is not 0
-            leading = (counts[MULTIPLICITY] + 1) * limb_count * LANES + X
-            counts[SIGN] = int(np.sign(double_of(s.c, limb_count, leading, LANES)))
-        project(state.now, state.step.rows, s, counts[LENGTH], limb_count)
+            leading = (counts[_MULTIPLICITY] + 1) * limb_count * LANES + X
+            counts[_SIGN] = int(np.sign(double_of(s.c, limb_count, leading, LANES)))
+        project(state.now, state.step.rows, s, counts[_LENGTH], limb_count)
         if seek and not _write_zeros(state, model, out):
             return DOUBTFUL
         _write_states(state, model, out)
         _write_series(state, model, out, i)
 
-        counts[TIME] += counts[LENGTH]
+        counts[TIME] += counts[_LENGTH]
         counts[STEPS] += 1
-        counts[MULTIPLICITY] = 0
-        counts[LENGTH] = counts[NEXT]
+        counts[_MULTIPLICITY] = 0
+        counts[_LENGTH] = counts[_NEXT]
         if counts[TIME] >= until:
             return GOOD
-    return FULL
+    return _FULL
 
 
 @merged
@@ -188,18 +188,18 @@ def _step_coefficients(state: MarchState, model: LimbModel) -> bool:
     s = state.step.s
     terms = state.step.terms
     while True:
-        m = counts[LENGTH]
-        if m != counts[SCALED]:
+        m = counts[_LENGTH]
+        if m != counts[_SCALED]:
             scale_terms(terms, model, m)
-            counts[SCALED] = m
+            counts[_SCALED] = m
         order_zero(s, terms, state.now, m, model.limb_count)
         shorter = m // 2
         if taylor_coefficients(s, terms, model.order, model.limb_count, model.drag):
             factor = step_size_factor(s, model.order, model.limb_count, model.tolerance)
             if factor >= LEAST_FACTOR:
-                counts[NEXT] = next_length(m, factor, model.longest)
+                counts[_NEXT] = next_length(m, factor, model.longest)
                 return True
             shorter = min(int(m * factor * SAFETY_FACTOR), m - 1)
         if shorter < 1:
             return False
-        counts[LENGTH] = shorter
+        counts[_LENGTH] = shorter

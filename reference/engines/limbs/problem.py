@@ -25,10 +25,10 @@ from .size import MOST_PREC, highest_prec, limb_count_for
 from .step import GRAINS, MOST_GRAINS, LimbModel
 
 # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
-TAIL_BITS = 9
+_TAIL_BITS = 9
 _ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
 # bits added at most for a swing smaller than l; none are added where there is no swing
-MOST_SWING_BITS = 64
+_MOST_SWING_BITS = 64
 # of the order, and of the first and the longest step, in a run that takes other steps
 _OTHER_STEPS = Fraction(7, 8)
 _GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
@@ -70,7 +70,7 @@ def limb_problem(
     prec = _prec_from_l(start, prec)
     unit, first = _unit_of_time(start)
     h = start.ctx.mpf(unit.numerator) / unit.denominator
-    order = order or round(_ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
+    order = order or round(_ORDER_PER_BIT * (prec + _TAIL_BITS)) + 2
     longest = _longest_step(start, h)
     if other_steps:
         order = _shortened(order)
@@ -82,7 +82,7 @@ def limb_problem(
         limb_count=limb_count,
         order=order,
         drag=bool(start.k.drag),
-        tolerance=math.ldexp(1.0, -(prec + TAIL_BITS)),
+        tolerance=math.ldexp(1.0, -(prec + _TAIL_BITS)),
         longest=longest,
         terms=_linear_terms(start, h, limb_count + 1),
         powers=LinearTerms(*(np.array(row, dtype=float) for row in _POWERS)),
@@ -153,7 +153,7 @@ def _swing_bits(start: Start) -> int:
     swing = max(abs(x), abs(y), height, reach)
     if not swing:
         return 0
-    return min(MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2)))))
+    return min(_MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2)))))
 
 
 # of the step length in the constants of `LinearTerms`, lane by lane

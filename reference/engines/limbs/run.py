@@ -49,7 +49,7 @@ _ORDER_PER_BIT = 0.5
 _POLYNOMIALS_PER_CALL = 64
 _FOR_EVER = 1 << 62  # in grains
 # SI values carry this much below the last limb: l need not be a short binary fraction
-SPARE_BITS = 32
+_SPARE_BITS = 32
 
 
 class Integration:
@@ -225,10 +225,10 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
     zeros = np.concatenate(integration.zeros)
     zeros = zeros[zeros[:, 0] <= int(plan.times[-1] / problem.grain * 2**bits)]
     moments_and_states = _si(zeros[:, :-1], [problem.grain, *factors])
-    transits = Table(("t", *RUN), bits + SPARE_BITS, moments_and_states)
+    transits = Table(("t", *RUN), bits + _SPARE_BITS, moments_and_states)
     return Run(
         plan=plan,
-        grid=Table(RUN, bits + SPARE_BITS, grid),
+        grid=Table(RUN, bits + _SPARE_BITS, grid),
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
         compile_s=integration.compile_s,
@@ -238,9 +238,9 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
 
 
 def _si(table: Any, factors: Sequence[Fraction]) -> list[tuple[int, ...]]:
-    """Return the rows of a table of integers, each column times a factor, over 2**SPARE_BITS times their unit."""
+    """Return the rows of a table of integers, each column times a factor, over 2**_SPARE_BITS times their unit."""
     columns = []
     for column, factor in zip(table.T, factors, strict=True):
-        scaled = factor * 2**SPARE_BITS
+        scaled = factor * 2**_SPARE_BITS
         columns.append(column * scaled.numerator // scaled.denominator)
     return list(zip(*columns, strict=True))

@@ -29,13 +29,13 @@ _SHALLOW = 2.0**26
 # the series is cut where two coefficients in a row are smaller, against the largest
 _NEGLIGIBLE = 2.0**-60
 # last bits of a number in limbs that rounding may have spoilt: they do not decide a sign
-NOISE_BITS = 12
+_NOISE_BITS = 12
 _NARROWEST = 2.0**-40  # half of the shortest interval that is cut
 _DEEPEST = 256  # intervals, one in another, down to the narrowest
 _NEWTON_STEPS = 30
-DERIVATIVE_BITS = 44  # correct bits of the derivative, a double, that Newton's method divides by
+_DERIVATIVE_BITS = 44  # correct bits of the derivative, a double, that Newton's method divides by
 # of a step: after a smaller correction the next is smaller by the bits of the derivative
-NEAR_BITS = 46
+_NEAR_BITS = 46
 _EDGE = 2.0**-30  # of a step: a zero may lie this far outside its interval
 
 
@@ -215,7 +215,7 @@ def _dip(z: Search, xdot: _Polynomial, interval: _Interval, step: Step, model: L
     if is_shallow:
         # the bottom of a shallow dip is noise in double
         bottom = _bottom_in_limbs(z, flat, at_bottom.bend, step, model)
-        if abs(bottom) < 2.0 ** (NOISE_BITS - (LIMB_BITS * model.limb_count - 1)):
+        if abs(bottom) < 2.0 ** (_NOISE_BITS - (LIMB_BITS * model.limb_count - 1)):
             return False
 
     if (bottom > 0.0) == (side > 0):
@@ -249,7 +249,7 @@ def _bottom_in_limbs(z: Search, flat: float, bend: float, step: Step, model: Lim
 def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
     """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval."""
     limb_count = model.limb_count
-    enough = 2.0 ** min(DERIVATIVE_BITS - (LIMB_BITS * limb_count - 1), -NEAR_BITS)
+    enough = 2.0 ** min(_DERIVATIVE_BITS - (LIMB_BITS * limb_count - 1), -_NEAR_BITS)
     previous = 1.0
     set_double(z.place, z.guess[i], limb_count)
     for _ in range(_NEWTON_STEPS):
