@@ -16,15 +16,15 @@ from .names import NEEDED, Layout, Naming, by_number, given, layout, meaning
 
 # bytes of the arrays that are read, unpacked: two million rows of long doubles
 MAX_UNPACKED = 1 << 28
-MOST_ARRAYS = 1000
-TRANSITS = "transits"
-TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
-AS_NAMED = Layout({}, {}, ())  # arrays by their columns' names, in SI units
+_MOST_ARRAYS = 1000
+_TRANSITS = "transits"
+_TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
+_AS_NAMED = Layout({}, {}, ())  # arrays by their columns' names, in SI units
 _EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
 
 
 def candidate_of(
-    name: str, arrays: Mapping[str, Array], transits: Array | None = None, made: Layout = AS_NAMED
+    name: str, arrays: Mapping[str, Array], transits: Array | None = None, made: Layout = _AS_NAMED
 ) -> Candidate:
     """Make a candidate of named arrays of real numbers, t among them; long doubles keep their digits in `low`.
 
@@ -95,13 +95,13 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
         with zipfile.ZipFile(stream) as archive:
             members = {
                 member.filename.removesuffix(".npy"): member
-                for member in archive.infolist()[:MOST_ARRAYS]
+                for member in archive.infolist()[:_MOST_ARRAYS]
             }
         if any(word.startswith("xl/") for word in members):
             advice = "Save the sheet as CSV."
             raise InputError(name, "an Excel workbook", "text with named columns", advice)
-        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
-        chosen = chosen or [word for word in members if word == TABLE]
+        chosen = [word for word in members if word == _TRANSITS or meaning(word, {}) is not None]
+        chosen = chosen or [word for word in members if word == _TABLE]
         size = sum(members[word].file_size for word in chosen)
         if size > MAX_UNPACKED:
             got = f"{size} bytes unpacked"
@@ -129,27 +129,27 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
         expected = "a table of real numbers"
         raise InputError(name, "a damaged .npy file", expected, f"{error}.") from None
     words = array.dtype.names  # of which none means transits: there is one for each row
-    records = {word: array[word] for word in words or () if word != TRANSITS}
-    return _of_arrays(records or {TABLE: array}, name, naming)
+    records = {word: array[word] for word in words or () if word != _TRANSITS}
+    return _of_arrays(records or {_TABLE: array}, name, naming)
 
 
 def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidate:
     """Make a candidate of arrays with names, or of a table, whose columns the user names, or their number does."""
     if not arrays:
         raise InputError(name, "none of them", _EXPECTED)
-    if [*arrays] != [TABLE]:
+    if [*arrays] != [_TABLE]:
         if naming.columns:
             expected = "no such option for arrays with names"
             raise InputError("--columns", ",".join(naming.columns), expected)
-        times = arrays.pop(TRANSITS, None)
+        times = arrays.pop(_TRANSITS, None)
         transits = None
         if times is not None:
-            field = f"{name}: {TRANSITS}"
+            field = f"{name}: {_TRANSITS}"
             transits = checked_transits(real_array(times, field), field)
         by_names = layout([*arrays], NEEDED, naming, name)
         return _candidate(name, [*arrays.values()], by_names, transits)
 
-    table = real_array(arrays[TABLE], name)
+    table = real_array(arrays[_TABLE], name)
     count = table.shape[1] if table.ndim == 2 else 0
     if naming.columns and count:
         columns: Layout | None = given(count, naming)

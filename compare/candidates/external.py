@@ -38,11 +38,11 @@ PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a dou
 TIMEOUT_S = 600.0
 REPEATS = 3
 # a program that takes longer than this, in s, is timed once, by the run that is scored
-LONG_S = 20.0
+_LONG_S = 20.0
 # the variable of the environment that holds the marks of a run and of those around it
 MARK = "FOUCAULT_RUN"
 # searches for descendants at most: a process may be started while the others are killed
-ROUNDS = 100
+_ROUNDS = 100
 # $1 is the mark; a line on stdin is the process group, and its end that of the process which wrote it
 _GUARD = """
 read -r group
@@ -247,7 +247,7 @@ def _end_all(leader: int, mark: str) -> None:
 
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(leader, signal.SIGKILL)
-    for _ in range(ROUNDS):
+    for _ in range(_ROUNDS):
         processes = list(_marked(mark))
         if not processes:
             return
@@ -279,7 +279,7 @@ def timed(
 ) -> tuple[BinaryIO, Timing]:
     """Run a program once as a warm-up, whose output is returned, and `repeats` more times to measure its run time."""
     output, cpu, wall = run_program(words, timeout_s)
-    if wall > LONG_S or repeats == 0:
+    if wall > _LONG_S or repeats == 0:
         return output, Timing(cpu, wall, 1, 0.0, warm=False)
     cpus_s = []
     walls_s = []

@@ -20,27 +20,27 @@ from reference.system.documents import texts_of
 from .candidate import COLUMNS, Deviation, multiplied
 
 vocabulary = texts_of(__file__)
-DIRECTIONS: dict[str, tuple[str, int]] = {
+_DIRECTIONS: dict[str, tuple[str, int]] = {
     word: (axis, sign) for word, (axis, sign) in vocabulary["directions"].items()
 }
-AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
-_AXIS = "|".join(sorted(AXES, key=len, reverse=True))
+_AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | _DIRECTIONS
+_AXIS = "|".join(sorted(_AXES, key=len, reverse=True))
 _PLACE = "position|pos|coordinate|coord|displacement|disp|location|loc"
 _SPEED = "velocity|vel|speed"
 POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
 VELOCITY = re.compile(
     rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt"
 )
-TIME_WORDS: set[str] = set(vocabulary["time_words"])
+_TIME_WORDS: set[str] = set(vocabulary["time_words"])
 # a column that is called so
-TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")
+_TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")
 # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
-LONGEST = 100
-BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
+_LONGEST = 100
+_BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
 # one piece or two
-AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
-LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
-LABEL = re.compile(
+_AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
+_LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
+_LABEL = re.compile(
     r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?",
     re.IGNORECASE,
 )
@@ -51,18 +51,18 @@ LENGTHS: dict[str, Fraction] = {
     unit: Fraction(size) for unit, size in vocabulary["lengths"].items()
 }  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
-OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
-OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
-TYPES: set[str] = set(vocabulary["types"])  # words that a line of types below the header may hold
-PER = re.compile(
+_OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
+_OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
+_TYPES: set[str] = set(vocabulary["types"])  # words that a line of types below the header may hold
+_PER = re.compile(
     r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)"
 )
-SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
+_SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
 # columns of a trajectory, of which those of z and of velocities may be missing
 NEEDED = ("t", "x", "y")
-SKIPPED = ("-", "_", "")  # words for a column that is not read
+_SKIPPED = ("-", "_", "")  # words for a column that is not read
 # by their number; the paper's program foucPend prints ten: t x y z X Y Z φ λ speed
-UNNAMED = {
+_UNNAMED = {
     3: ("t", "x", "y"),
     4: ("t", "x", "y", "z"),
     7: ("t", *COLUMNS),
@@ -97,11 +97,11 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
     Raises:
         InputError: its unit contradicts `units`.
     """
-    text = unquoted(word)
+    text = _unquoted(word)
     # what ends with a separator is a part of a line
-    if len(text) > LONGEST or text[-1:] in (",", ";", "|"):
+    if len(text) > _LONGEST or text[-1:] in (",", ";", "|"):
         return None
-    label = LABEL.fullmatch(text)
+    label = _LABEL.fullmatch(text)
     text = label[1] if label else text
     for name, suffix, direction in _parts(text):
         named = _column(name)
@@ -113,7 +113,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         if direction:
             if column == "t":
                 continue
-            axis, sign = DIRECTIONS[direction.lower()]
+            axis, sign = _DIRECTIONS[direction.lower()]
             column = f"{column[:-1]}{axis}"
             rank = 2
         is_function_of_time = suffix.lower() in ("t", "time") and column != "t"
@@ -121,7 +121,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         default = units.get(column, "")
         size = size_of(unit or default, column) if unit or default else Fraction(1)
         if size is None:
-            if BRACKETS.fullmatch(text):
+            if _BRACKETS.fullmatch(text):
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
         if unit and default and size not in (1, size_of(default, column)):
@@ -131,7 +131,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
     return None
 
 
-def unquoted(word: str) -> str:
+def _unquoted(word: str) -> str:
     """Return a word without white space around it and without a pair of quotes."""
     text = word.strip()
     is_quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`"
@@ -142,26 +142,26 @@ def _parts(text: str) -> list[tuple[str, str, str]]:
     """Return the ways to take a word apart into a name, a unit and a direction, the most likely first."""
     ways = []
     for name, last in _with_unit(text):
-        if last.lower() in DIRECTIONS:
+        if last.lower() in _DIRECTIONS:
             ways += [(before, unit, last) for before, unit in _with_unit(name)]
     return ways + [(name, unit, "") for name, unit in _with_unit(text)]
 
 
 def _with_unit(text: str) -> list[tuple[str, str]]:
     """Return the ways to take a text apart into a name and a unit, which may be empty."""
-    if brackets := BRACKETS.fullmatch(text):
+    if brackets := _BRACKETS.fullmatch(text):
         return [(brackets[1], brackets[2])]
     ways = [(text, "")]
-    if TIME_UNITS.fullmatch(text.lower()):
+    if _TIME_UNITS.fullmatch(text.lower()):
         ways.append(("t", text))
-    if after := AFTER.fullmatch(text):
+    if after := _AFTER.fullmatch(text):
         ways.append((after[1], after[2]))
     return ways + _last_apart(text)
 
 
 def _last_apart(text: str) -> list[tuple[str, str]]:
     """Return a text without its last piece, and this piece."""
-    last = LAST.fullmatch(text)
+    last = _LAST.fullmatch(text)
     return [(last[1], last[2])] if last else []
 
 
@@ -172,21 +172,21 @@ def _column(name: str) -> tuple[str, int, int] | None:
     plain = unicodedata.normalize("NFD", name.lower()).replace("\u0307", "dot")
     plain = re.sub(r"['’′]$", "prime", plain)
     plain = "".join(letter for letter in plain if letter.isalnum())
-    if plain in TIME_WORDS:
+    if plain in _TIME_WORDS:
         return "t", 1, 2
     for pattern, speed in ((POSITION, ""), (VELOCITY, "v")):
         if match := pattern.fullmatch(plain):
             *before, word = filter(None, match.groups())
-            if not before or word in DIRECTIONS:
-                axis, sign = AXES[word]
+            if not before or word in _DIRECTIONS:
+                axis, sign = _AXES[word]
                 return f"{speed}{axis}", sign, 2
     return None
 
 
-def plain_unit(word: str) -> str:
+def _plain_unit(word: str) -> str:
     """Return the usual word for a unit of time or length: `s` for seconds; other words come back in lower case."""
     word = word.strip().lower().replace("µ", "u").replace("μ", "u").strip(".")
-    return OTHER_WORDS.get(word, word)
+    return _OTHER_WORDS.get(word, word)
 
 
 def size_of(unit: str, column: str) -> Fraction | None:
@@ -195,16 +195,16 @@ def size_of(unit: str, column: str) -> Fraction | None:
     In the column of a speed, `ms` means m/s.
     """
     if column == "t":
-        return TIMES.get(plain_unit(unit))
+        return TIMES.get(_plain_unit(unit))
     if column in ("x", "y", "z"):
-        return LENGTHS.get(plain_unit(unit))
+        return LENGTHS.get(_plain_unit(unit))
     word = unit.strip().lower()
-    word = "m/s" if word == "ms" else SHORT_SPEEDS.get(word, word)
-    parts = PER.fullmatch(word)
+    word = "m/s" if word == "ms" else _SHORT_SPEEDS.get(word, word)
+    parts = _PER.fullmatch(word)
     if parts is None:
         return None
-    length = LENGTHS.get(plain_unit(parts[1] or parts[3]))
-    time = TIMES.get(plain_unit(parts[2] or parts[4]))
+    length = LENGTHS.get(_plain_unit(parts[1] or parts[3]))
+    time = TIMES.get(_plain_unit(parts[2] or parts[4]))
     return None if length is None or time is None else length / time
 
 
@@ -216,7 +216,7 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
     """
     units: dict[str, str] = {}
     for word in words:
-        unit = plain_unit(word)
+        unit = _plain_unit(word)
         if unit not in TIMES and unit not in LENGTHS:
             expected = f"units of time or length: {', '.join([*TIMES, *LENGTHS])}"
             raise InputError("--units", word, expected, "Separate two with a comma.")
@@ -319,14 +319,14 @@ def layout(
         if meant.factor != 1:
             factors[name] = meant.factor
         if meant.rank == 2:
-            renamed.append(f"{unquoted(word)} as {'-' if meant.factor < 0 else ''}{name}")
+            renamed.append(f"{_unquoted(word)} as {'-' if meant.factor < 0 else ''}{name}")
         if abs(meant.factor) != 1:
             converted.append(f"{name} from {meant.unit}")
 
     conventions = []
     if renamed:
-        unread = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
-        unread = [word for word in unread if word not in SKIPPED]
+        unread = [_unquoted(word) for i, word in enumerate(words) if i not in places.values()]
+        unread = [word for word in unread if word not in _SKIPPED]
         remark = f"; not read: {', '.join(unread)}" if unread else ""
         conventions.append(Deviation("columns", f"{', '.join(renamed)}{remark}"))
     if converted:
@@ -367,7 +367,7 @@ def _with_line_of_units(
     Raises:
         InputError: the header or --units says another one.
     """
-    unit = bare_unit(printed)
+    unit = _bare_unit(printed)
     if meant is None or not unit:
         return meant
     by_header = meaning(word, {})
@@ -387,12 +387,12 @@ def _with_line_of_units(
     return replace(meant, factor=size * sign, unit=unit)
 
 
-def bare_unit(printed: str) -> str:
+def _bare_unit(printed: str) -> str:
     """Return a unit without brackets and quotes; nothing for a word that stands for none."""
-    text = unquoted(printed)
+    text = _unquoted(printed)
     if len(text) > 1 and text[0] in "([{<" and text[-1] in ")]}>":
         text = text[1:-1].strip()
-    return "" if text in SKIPPED or text.lower() in TYPES else text
+    return "" if text in _SKIPPED or text.lower() in _TYPES else text
 
 
 def units_of(words: Sequence[str]) -> list[str] | None:
@@ -400,12 +400,12 @@ def units_of(words: Sequence[str]) -> list[str] | None:
 
     Names of types, such as double, stand for no unit, and so does an empty word.
     """
-    units = [bare_unit(word) for word in words]
-    has_unit = any(unquoted(word).lower() in TYPES for word in words)
+    units = [_bare_unit(word) for word in words]
+    has_unit = any(_unquoted(word).lower() in _TYPES for word in words)
     for unit in units:
         if any(size_of(unit, column) is not None for column in ("t", "x", "vx")):
             has_unit = True
-        elif unit and plain_unit(unit) not in OTHER_UNITS:
+        elif unit and _plain_unit(unit) not in _OTHER_UNITS:
             return None
     return units if has_unit else None
 
@@ -421,7 +421,7 @@ def given(count: int, naming: Naming) -> Layout:
     if len(names) != count:
         expected = f"a name for each of the {count} columns, - for one that is not read"
         raise InputError(option, ",".join(names), expected)
-    unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
+    unknown = [name for name in names if name.strip() not in _SKIPPED and meaning(name, {}) is None]
     if unknown:
         expected = f"names of {', '.join(['t', *COLUMNS])}"
         what_to_do = "Write - for a column that is not read."
@@ -433,7 +433,7 @@ def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | Non
     """Return the layout of a file without a header, by the number of its columns; None if that does not tell it."""
     if len(needed) == 1:
         return layout(["t"], needed, naming, "--columns") if count == 1 else None
-    names = UNNAMED.get(count)
+    names = _UNNAMED.get(count)
     if names is None:
         return None
     unread = ["-"] * (count - len(names))

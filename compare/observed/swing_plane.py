@@ -24,7 +24,7 @@ from reference.model.force import tension
 from reference.model.start import Start, scaled
 from reference.numbers.precision import Array
 
-PREC = 200  # bits in which a rest position is computed before it becomes doubles
+_PREC = 200  # bits in which a rest position is computed before it becomes doubles
 # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction
 _ROUND = 1e-6
 # samples in a period: the interpolation of an apsis between them is accurate to 1e-12
@@ -55,7 +55,7 @@ class Gauge:
         Raises:
             UnreachableError: there is no rest position, or nothing pulls the bob back to it.
         """
-        start = Start.of(scene.exact, PREC)
+        start = Start.of(scene.exact, _PREC)
         hanging = start.rest
         turn = (
             -start.ctx.mpf(start.k.turn[1]) * hanging[1]
@@ -106,7 +106,7 @@ def rest_in_metres(scene: Scene) -> Array:
     Raises:
         UnreachableError: no rest position is singled out.
     """
-    start = Start.of(scene.exact, PREC)
+    start = Start.of(scene.exact, _PREC)
     return np.array([float(part * start.k.length) for part in start.rest])
 
 

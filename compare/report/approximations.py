@@ -34,8 +34,8 @@ from .folder import Report
 from .page import Html, PageTable, figure, page, paragraph, section
 
 Swept = dict[str, list[SweepRow]]  # rows of sweeps, by what is varied
-OVERS = ("time", "amplitude", "latitude", "length")
-CURVE_TIMES = 80  # points of a curve over time
+_OVERS = ("time", "amplitude", "latitude", "length")
+_CURVE_TIMES = 80  # points of a curve over time
 _SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
 _WRAP = 2  # names per line of a label
 _MEASURED = {"error_m": "m", "plane_error_arcsec": "arcsec"}  # errors and their units
@@ -58,7 +58,7 @@ def document_of(
     t_end = float(scene.exact.t_end)
     chosen = list(motions().values())
     tables: list[Callable[[], Iterable[Any]]] = []
-    for over in OVERS:
+    for over in _OVERS:
         end = t_end if over == "time" else min(SWEEP_S, t_end)
         tables.append(partial(limits_of, scene, chosen, over, end, swept))
     tables.append(partial(error_table, scene, chosen, t_end))
@@ -107,12 +107,12 @@ def report_of(scene: Scene, swept: Swept) -> Report:
 def page_text(scene: Scene, swept: Swept, report: dict[str, Any]) -> str:
     """Return the page as HTML."""
     t_end = report["t_end"]
-    times = [float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)]
+    times = [float(t) for t in np.geomspace(1.0, t_end, _CURVE_TIMES)]
     over_time = error_table(scene, [*motions().values()], t_end, times=times)
     same_line = "Approximations with nearly equal errors share a line."
     within = f"Largest position error within {min(SWEEP_S, t_end):g} s, as a function of"
     sweeps = [figure(chart(rows), f"{within} {over}.") for over, rows in swept.items()]
-    ranges = [_limits(report, over).html(f"Ranges of {over} in {UNITS[over]}") for over in OVERS]
+    ranges = [_limits(report, over).html(f"Ranges of {over} in {UNITS[over]}") for over in _OVERS]
     return page(
         f"{scene.id}: how accurate the approximations are",
         [

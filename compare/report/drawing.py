@@ -26,7 +26,7 @@ INKS = {
 }  # fmt: skip
 INK, FAINT, RULE, BAND, PAPER, BLUE = INKS.values()
 # the same on a dark page, as in page.css
-DARK_INKS = {
+_DARK_INKS = {
     "ink": "#e6e6e6", "faint": "#a4a4a4", "rule": "#3b3b3b", "band": "#272727", "paper": "#171717", "blue": "#3d9fdc",
 }  # fmt: skip
 # Okabe and Ito's palette for colour-blind readers; in grey the line styles tell lines apart
@@ -42,9 +42,9 @@ _DASHES: tuple[Any, ...] = (
 )
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 
-SUFFIXES = (".svg", ".png", ".pdf")  # of picture files
+_SUFFIXES = (".svg", ".png", ".pdf")  # of picture files
 _ROOM = 0.06  # free part of a logarithmic axis at each end
-PIXELS = 4 / 3  # CSS pixels in a typographic point
+_PIXELS = 4 / 3  # CSS pixels in a typographic point
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PARAMETERS = {
     "svg.hashsalt": "foucault",  # the same picture gives the same bytes
@@ -106,8 +106,8 @@ def check_target(path: Path, field: str = "--plot") -> None:
         InputError: matplotlib is missing, the suffix is no picture's, or there is no such folder.
     """
     check_matplotlib(field)
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(field, str(path), f"a path that ends in {', '.join(SUFFIXES)}")
+    if path.suffix.lower() not in _SUFFIXES:
+        raise InputError(field, str(path), f"a path that ends in {', '.join(_SUFFIXES)}")
     if path.is_dir() or not path.absolute().parent.is_dir():
         raise InputError(field, str(path), "a file in a folder that exists")
 
@@ -159,7 +159,7 @@ def _dark_scheme() -> str:
     rules = []
     for name, light in INKS.items():
         for use in ("fill", "stroke"):
-            rule = f'[style*="{use}: {light}"] {{ {use}: {DARK_INKS[name]} !important }}'
+            rule = f'[style*="{use}: {light}"] {{ {use}: {_DARK_INKS[name]} !important }}'
             rules.append(rule)
     return "@media (prefers-color-scheme: dark) {\n" + "\n".join(rules) + "\n}\n"
 
@@ -203,7 +203,7 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
     width, height = 72 * figure.get_size_inches()
     opening = (
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
-        f'viewBox="0 0 {width:g} {height:g}" width="{width * PIXELS:.0f}" class="{kind}" '
+        f'viewBox="0 0 {width:g} {height:g}" width="{width * _PIXELS:.0f}" class="{kind}" '
         f'style="stroke-linejoin: round" role="img" aria-label="{html.escape(description)}">'
     )
     for word, colour in INKS.items():

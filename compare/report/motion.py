@@ -19,9 +19,9 @@ from ..observed.swing_plane import Gauge, gauge_of
 # Rows that are too far apart for a line are replaced by this many single swings, spread over the span.
 SWINGS = 9
 POINTS = 40  # per swing
-COARSE = 3  # rows farther apart than this many of these points are not joined to a line
-WIDE = -0.7  # z over cord length; a bob that rises above it is shown on its sphere
-AT_REST = 2.0**-128  # motion below this part of the cord length is rounding, not a swing
+_COARSE = 3  # rows farther apart than this many of these points are not joined to a line
+_WIDE = -0.7  # z over cord length; a bob that rises above it is shown on its sphere
+_AT_REST = 2.0**-128  # motion below this part of the cord length is rounding, not a swing
 _WINDOW = 24  # rows of a candidate whose longest axis is the swing plane
 _BENT = 0.5  # rows form a line if successive steps differ by less than this part of a step
 _FLAT = 0.5  # a path whose axes have a larger ratio than this has no clear direction
@@ -61,7 +61,7 @@ class PicturedMotion:
     @property
     def wide(self) -> bool:
         """True if the swing is too wide to be shown from above alone."""
-        return bool(self.length) and bool((self.rows[:, 2] > WIDE * self.length).any())
+        return bool(self.length) and bool((self.rows[:, 2] > _WIDE * self.length).any())
 
     @classmethod
     def of_golden(cls, golden: Golden | Solution, until: float = np.inf) -> PicturedMotion:
@@ -74,7 +74,7 @@ class PicturedMotion:
         positions = states[:, :3]
         length = float(golden.scene.exact.length)
 
-        moves = np.ptp(positions, axis=0).max() > AT_REST * length
+        moves = np.ptp(positions, axis=0).max() > _AT_REST * length
         gauge = _gauge(golden) if moves else None
         line, swings = _line(golden.scene, t, states, gauge)
         if gauge is None:
@@ -130,7 +130,7 @@ def _gauge(golden: Golden | Solution) -> Gauge | None:
 
 def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
     """Return the points of the line, shape (points, 3), and how many single swings it shows."""
-    if gauge is None or t[1] * POINTS <= COARSE * gauge.period:
+    if gauge is None or t[1] * POINTS <= _COARSE * gauge.period:
         return states[:, :3], 0
     swing = np.linspace(0.0, gauge.period, POINTS + 1)
     last_start = float(t[-1]) - gauge.period

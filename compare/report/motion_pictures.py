@@ -17,12 +17,12 @@ from reference.plain_text import shortened
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
 from .motion import POINTS, PicturedMotion
 
-DOTS = 360  # most dots of one kind in a panel
-LINE = 1200  # most points of a path
-DOT = 3.0  # diameter of a dot in points
-PANEL = (3.5, 3.2)  # width and height in inches
-SEEN_FROM = np.radians(-60.0)  # azimuth of the eye that sees the sphere
-ABOVE = np.radians(20.0)  # and its elevation
+_DOTS = 360  # most dots of one kind in a panel
+_LINE = 1200  # most points of a path
+_DOT = 3.0  # diameter of a dot in points
+_PANEL = (3.5, 3.2)  # width and height in inches
+_SEEN_FROM = np.radians(-60.0)  # azimuth of the eye that sees the sphere
+_ABOVE = np.radians(20.0)  # and its elevation
 _LENGTH_UNITS = (  # factor, symbol, and the smallest length in m that is shown in it
     (1e-3, "km", 1e3),
     (1.0, "m", 0.1),
@@ -43,9 +43,9 @@ _ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after i
 _FONTS = re.compile(r"font-family: [^;\"]+")
 _MARKERS = re.compile(r"(?:<use [^>]*style=\"fill: ([^;\"]*)[^>]*/>\s*){2,}")
 _PLACE = re.compile(r'x="(\S+)" y="(\S+)"')
-THUMB = 200  # side of a thumbnail in its own units
-THUMB_POINTS = 400  # most points of a thumbnail
-LONGEST_NAME = 40  # characters of a file's name above its picture
+_THUMB = 200  # side of a thumbnail in its own units
+_THUMB_POINTS = 400  # most points of a thumbnail
+_LONGEST_NAME = 40  # characters of a file's name above its picture
 
 
 def path(axes: Any, motion: PicturedMotion) -> None:
@@ -54,7 +54,7 @@ def path(axes: Any, motion: PicturedMotion) -> None:
     size = float(np.nanmax(np.abs(points))) or 1.0
     scale, unit = length_unit(size)
     line = _line(motion) * scale
-    rows = _thinned(motion.rows, LINE) * scale
+    rows = _thinned(motion.rows, _LINE) * scale
     first = POINTS + 1 if motion.swings else len(line)
     if motion.swings:
         axes.plot(*line[:first, :2].T, color=BLUE, linewidth=1.1, label="first swing", zorder=3)
@@ -108,8 +108,8 @@ def plane(axes: Any, motion: PicturedMotion) -> None:
     steps = (np.diff(motion.plane) + 90) % 180 - 90
     smooth = np.abs(steps).max() < 60
     angle = np.unwrap(motion.plane, period=180) if smooth else motion.plane
-    t = _thinned(motion.plane_t, DOTS)
-    angle = _thinned(angle, DOTS)
+    t = _thinned(motion.plane_t, _DOTS)
+    angle = _thinned(angle, _DOTS)
     seconds, word = time_unit(float(motion.t[-1]))
     _dots(axes, t * seconds, angle, BLUE)
     if np.ptp(angle) < _SMALL:
@@ -134,8 +134,8 @@ def transits(axes: Any, motion: PicturedMotion) -> None:
     ends = ((-1, BLUE, "eastern end"), (1, COLOURS[1], "western end"))
     for direction, colour, name in ends:
         selected = motion.directions == direction
-        t = _thinned(motion.transit_t[selected], DOTS // 2)
-        x = _thinned(motion.transit_x[selected], DOTS // 2)
+        t = _thinned(motion.transit_t[selected], _DOTS // 2)
+        x = _thinned(motion.transit_x[selected], _DOTS // 2)
         if len(t):
             _dots(axes, t * seconds, x * scale, colour, name)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
@@ -159,10 +159,10 @@ def panels(motion: PicturedMotion) -> dict[str, Callable[[Any, PicturedMotion], 
 def motion_picture(motion: PicturedMotion, names: Sequence[str], target: Path) -> bytes:
     """Return the content of a picture file with panels side by side; the file's name says which form."""
     drawn = panels(motion)
-    with sheet((PANEL[0] * len(names), PANEL[1] + 0.3)) as figure:
+    with sheet((_PANEL[0] * len(names), _PANEL[1] + 0.3)) as figure:
         for axes, name in zip(np.atleast_1d(figure.subplots(1, len(names))), names, strict=True):
             drawn[name](axes, motion)
-        figure.suptitle(shortened(motion.name, LONGEST_NAME), x=0.01, ha="left", fontsize=10)
+        figure.suptitle(shortened(motion.name, _LONGEST_NAME), x=0.01, ha="left", fontsize=10)
         return picture(figure, target.suffix[1:].lower())
 
 
@@ -170,7 +170,7 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
     """Return each picture as an SVG element of its own, small and for a page."""
     elements = []
     for name, draw in panels(motion).items():
-        with sheet(PANEL) as figure:
+        with sheet(_PANEL) as figure:
             axes = figure.subplots()
             draw(axes, motion)
             text = svg_text(
@@ -187,31 +187,31 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
 
 def thumbnail(motion: PicturedMotion) -> str:
     """Return the path, from above or on its sphere, as a small SVG element without words."""
-    radius = 0.46 * THUMB
-    points = _thinned(_line(motion) if len(motion.line) else motion.rows, THUMB_POINTS)
+    radius = 0.46 * _THUMB
+    points = _thinned(_line(motion) if len(motion.line) else motion.rows, _THUMB_POINTS)
     if motion.wide:
         bob = _projected(points / motion.length)
         right = bob.right
         up = bob.up
         size = 1.0
-        ring = f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{radius:.0f}"/>'
+        ring = f'<circle cx="{_THUMB // 2}" cy="{_THUMB // 2}" r="{radius:.0f}"/>'
     else:
         right, up = points[:, :2].T
         size = float(np.nanmax(np.hypot(right, up))) or 1.0
         ring = ""
 
-    places = np.column_stack([right, -up]) * (radius / size) + THUMB / 2
+    places = np.column_stack([right, -up]) * (radius / size) + _THUMB / 2
     words = ["M" if np.isnan(x) else f"{x:.0f} {y:.0f}" for x, y in places]
     path = f"M{' '.join(words)}".removesuffix(" M")
     release = f'<path class="release" d="M{words[0]}h0"/>'
-    box = f"0 0 {THUMB} {THUMB}"
+    box = f"0 0 {_THUMB} {_THUMB}"
     return f'<svg viewBox="{box}" aria-hidden="true">{ring}<path d="{path}"/>{release}</svg>'
 
 
 def _strokes(markers: re.Match[str]) -> str:
     """Return markers, each an element of its own, as one path of zero-length strokes."""
     places = "".join(f"M{x} {y}h0" for x, y in _PLACE.findall(markers[0]))
-    style = f"fill: none; stroke: {markers[1]}; stroke-width: {DOT}; stroke-linecap: round"
+    style = f"fill: none; stroke: {markers[1]}; stroke-width: {_DOT}; stroke-linecap: round"
     return f'<path d="{places}" style="{style}"/>\n'
 
 
@@ -243,7 +243,7 @@ def _shown(motion: PicturedMotion) -> str:
 
 def _line(motion: PicturedMotion) -> Array:
     """Return the points of the line; single swings are short enough."""
-    return motion.line if motion.swings else _thinned(motion.line, LINE)
+    return motion.line if motion.swings else _thinned(motion.line, _LINE)
 
 
 def _thinned(values: Array, most: int) -> Array:
@@ -270,11 +270,11 @@ class _Projected:
 def _projected(points: Array) -> _Projected:
     """Return points of the unit sphere, shape (points, 3), as the eye sees them."""
     x, y, z = points.T
-    to_eye = x * np.cos(SEEN_FROM) + y * np.sin(SEEN_FROM)
+    to_eye = x * np.cos(_SEEN_FROM) + y * np.sin(_SEEN_FROM)
     return _Projected(
-        right=y * np.cos(SEEN_FROM) - x * np.sin(SEEN_FROM),
-        up=z * np.cos(ABOVE) - to_eye * np.sin(ABOVE),
-        near=z * np.sin(ABOVE) + to_eye * np.cos(ABOVE),
+        right=y * np.cos(_SEEN_FROM) - x * np.sin(_SEEN_FROM),
+        up=z * np.cos(_ABOVE) - to_eye * np.sin(_ABOVE),
+        near=z * np.sin(_ABOVE) + to_eye * np.cos(_ABOVE),
     )
 
 
@@ -299,7 +299,7 @@ def _key(axes: Any, below: float = 0.2) -> None:
 
 
 def _dots(axes: Any, x: Array, y: Array, colour: str, name: str = "") -> None:
-    style = {"linestyle": "none", "marker": "o", "markersize": DOT, "markeredgewidth": 0}
+    style = {"linestyle": "none", "marker": "o", "markersize": _DOT, "markeredgewidth": 0}
     axes.plot(x, y, color=colour, label=name or None, **style)
 
 

@@ -19,10 +19,10 @@ from ..studies.row import Row, grouped
 
 # errors for which costs are tabulated and the cheapest method is named
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)
-PAPER_METHOD = "rk4"
-PAPER_NAME = "the paper's RK4"
-SMALL = 1.5e-3  # numbers below this are written with an exponent
-ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
+_PAPER_METHOD = "rk4"
+_PAPER_NAME = "the paper's RK4"
+_SMALL = 1.5e-3  # numbers below this are written with an exponent
+_ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
 
 
 @dataclass(frozen=True)
@@ -219,23 +219,23 @@ def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: f
     """Return the cheapest method, compared with the paper's, or with the next if it is the paper's."""
     cheapest, least_s = costs[0]
     head = f"{where} the cheapest method is {cheapest.label}, with {seconds(least_s)} of CPU time"
-    if cheapest.method == PAPER_METHOD:
+    if cheapest.method == _PAPER_METHOD:
         if len(costs) == 1:
             return f"{head}."
         second, cpu_s = costs[1]
         return f"{head}: {_times(cpu_s / least_s)} the next, {second.label}."
     for curve, cpu_s in costs:
-        if curve.method == PAPER_METHOD:
-            return f"{head}: {_times(cpu_s / least_s)} {PAPER_NAME}."
-    paper_rows = [row for row in _measured(rows) if row.method == PAPER_METHOD]
+        if curve.method == _PAPER_METHOD:
+            return f"{head}: {_times(cpu_s / least_s)} {_PAPER_NAME}."
+    paper_rows = [row for row in _measured(rows) if row.method == _PAPER_METHOD]
     if not paper_rows:
         return f"{head}."
     best_m = min(error_of(row, bound_m) for row in paper_rows)
-    return f"{head}; {PAPER_NAME} does not reach it ({best_m:.1e} m at best)."
+    return f"{head}; {_PAPER_NAME} does not reach it ({best_m:.1e} m at best)."
 
 
 def _times(ratio: float) -> str:
-    if ratio < ALIKE:
+    if ratio < _ALIKE:
         return "as cheap as"
     two_digits = float(f"{ratio:.2g}")
     return f"{two_digits:.15g} times cheaper than"
@@ -292,7 +292,7 @@ def seconds(cpu_s: float) -> str:
 
 def tidy(value: float) -> str:
     """Return a number with three digits, small ones with an exponent: 1e-4, 2.22e-16, 0.05, 113."""
-    if not 0 < abs(value) < SMALL:
+    if not 0 < abs(value) < _SMALL:
         return f"{value:.3g}"
     digits, _, exponent = f"{value:.2e}".partition("e")
     return f"{digits.rstrip('0').rstrip('.')}e{int(exponent)}"

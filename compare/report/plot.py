@@ -35,9 +35,9 @@ from .folder import write_file
 from .motion import PicturedMotion
 from .motion_pictures import motion_picture, panels, time_ticks, time_unit
 
-LONGEST_NAME = 32  # characters of a file's name beside its line
-LINE_WIDTH = 1.3  # points
-WIDEST = 5.0  # points
+_LONGEST_NAME = 32  # characters of a file's name beside its line
+_LINE_WIDTH = 1.3  # points
+_WIDEST = 5.0  # points
 
 
 @dataclass(frozen=True)
@@ -125,11 +125,11 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     lowest_m = max(_smallest_m(scores), bound_m / 30)
     top_m = max(10 * bound_m, largest_m)
     # each line is thinner than those below it, so that two that coincide are both seen
-    widths = np.linspace(min(LINE_WIDTH * len(scores), WIDEST), LINE_WIDTH, len(scores))
+    widths = np.linspace(min(_LINE_WIDTH * len(scores), _WIDEST), _LINE_WIDTH, len(scores))
     lines = []
     for i, score in enumerate(scores):
         t, error = _thinned(score.errors.t, np.maximum(score.errors.position, lowest_m))
-        name = shortened(Path(score.candidate.name).name, LONGEST_NAME)
+        name = shortened(Path(score.candidate.name).name, _LONGEST_NAME)
         style = {**line_style(COLOURS[i % len(COLOURS)], i), "linewidth": widths[i]}
         lines.append(ChartLine(name, (t * scale).tolist(), error.tolist(), style))
     end = max(line.x[-1] for line in lines)

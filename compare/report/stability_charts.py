@@ -59,7 +59,7 @@ _CHARACTER = 0.27  # width of a character in squares
 _LEAST_COLUMNS = 15  # columns of squares that the key needs
 _KEY_ROWS = 5.5  # rows of squares that it needs
 
-SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
+_SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
 _FAN = 50.0  # length of the guide lines as a factor of time
 _BEFORE = 5.0  # they end this factor of time before the lines do
@@ -223,5 +223,5 @@ def _guides(lines: Sequence[ChartLine]) -> list[ChartLine]:
     span = max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)
     low = highest * max(4.0, span**_ABOVE)
     return [
-        ChartLine(name, [start, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES
+        ChartLine(name, [start, end], [low, low * _FAN**slope], GUIDE) for slope, name in _SLOPES
     ]

@@ -24,12 +24,16 @@ from .pareto import tidy
 from .stability_charts import LETTERS, error_growth, heat_map
 from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
 
-COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)  # statuses with a count of their own
-NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
+_COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)  # statuses with a count of their own
+_NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 _LEAD_OF_PROGRAMS = (
     "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
 )
-PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
+_PAIRS = (
+    ("scipy_radau", "scipy_dop853"),
+    ("scipy_bdf", "scipy_rk45"),
+    ("cvode_bdf", "cvode_adams"),
+)
 
 
 def document_of(
@@ -40,7 +44,7 @@ def document_of(
     return {
         "programs": dict(programs or {}),
         "rows": [asdict(cell) for cell in cells],
-        **{status.value: statuses[status] for status in COUNTED},
+        **{status.value: statuses[status] for status in _COUNTED},
         "long_runs": [run.document() for run in runs],
         "machine": machine(),
     }
@@ -48,7 +52,7 @@ def document_of(
 
 def headlines(cells: Sequence[Cell]) -> list[str]:
     """Return the main results as sentences: failures of methods first, then ill-conditioned motions."""
-    tried = [cell for cell in cells if cell.status not in NOT_TRIED]
+    tried = [cell for cell in cells if cell.status not in _NOT_TRIED]
     wrong = [cell for cell in tried if cell.status == Status.SILENTLY_WRONG]
     magnified = [cell for cell in tried if cell.status == Status.ILL_CONDITIONED]
     sentences = list(_programs_broken(cells))
@@ -77,7 +81,7 @@ def _ranking(counts: Counter[str], most: int | None = None) -> str:
 
 def _not_tried(cells: Sequence[Cell]) -> str:
     """Return in brackets how many cells have no run, and why; "" if all have one."""
-    counts = Counter(cell.status.words for cell in cells if cell.status in NOT_TRIED)
+    counts = Counter(cell.status.words for cell in cells if cell.status in _NOT_TRIED)
     if not counts:
         return ""
     reasons = ", ".join(f"{count} more were {words}" for words, count in counts.items())
@@ -99,7 +103,7 @@ def _run_names(cells: Sequence[Cell]) -> Callable[[Cell], str]:
 def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each program of the user's a sentence: on which scenes it breaks, and how."""
     for name in dict.fromkeys(cell.method for cell in cells if cell.precision == NUMBER):
-        tried = [cell for cell in cells if cell.method == name and cell.status not in NOT_TRIED]
+        tried = [cell for cell in cells if cell.method == name and cell.status not in _NOT_TRIED]
         failures = [_failure(cell) for cell in tried if cell.status != Status.OK]
         listed = f": {', '.join(failures)}" if failures else ""
         yield f"{name} breaks on {len(failures)} of {len(tried)} scenes{listed}."
@@ -117,7 +121,7 @@ def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
     costs = {(cell.scene, cell.method): cell.cpu_s for cell in cells if cell.cpu_s}
     scenes = {cell.scene for cell in cells}
     stiff = {scene for scene in scenes if "stiff" in load_scene(scene).flags}
-    for implicit, explicit in PAIRS:
+    for implicit, explicit in _PAIRS:
         gains = {
             scene: costs[scene, explicit] / costs[scene, implicit]
             for scene in scenes
@@ -183,7 +187,7 @@ def _failure_sections(cells: Sequence[Cell]) -> list[Html]:
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
     wrong = [cell for cell in failures if cell.status == Status.SILENTLY_WRONG]
     magnified = [cell for cell in failures if cell.status == Status.ILL_CONDITIONED]
-    others = [cell for cell in failures if cell.status not in COUNTED]
+    others = [cell for cell in failures if cell.status not in _COUNTED]
     parts = [section("Silently wrong", _runs(wrong, reasons=True))]
     if magnified:
         heading = "Ill-conditioned: the motion magnifies errors"
@@ -232,7 +236,7 @@ def _scenes(cells: Sequence[Cell]) -> Html:
     for name in dict.fromkeys(cell.scene for cell in cells):
         scene = load_scene(name)
         statuses = [cell.status for cell in cells if cell.scene == name]
-        tried = [status for status in statuses if status not in NOT_TRIED]
+        tried = [status for status in statuses if status not in _NOT_TRIED]
         correct = tried.count(Status.OK)
         failed = len(tried) - correct
         rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))

@@ -38,7 +38,7 @@ Coordinate = Callable[[Row], float | None]
 
 CPU = "CPU seconds"
 ERROR = "largest error of position in m"
-FINEST_M = 1e-20  # smallest error of the upper panel, which shows methods of fixed precision
+_FINEST_M = 1e-20  # smallest error of the upper panel, which shows methods of fixed precision
 _SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
 _BAND_WITHIN = 1e12  # the bound is shown if the smallest error is less than this many times larger
 _COLUMNS = 3  # panels side by side
@@ -153,7 +153,7 @@ def _panels(lines: Sequence[Ladder], bound_m: float) -> list[_Panel]:
     fixed = [error for line in lines if line.family != Family.MANY_DIGITS for error in line.y]
     finest = min(errors)
     highest = 30 * max(errors)
-    split = max(min(fixed) / _SPLIT, FINEST_M) if fixed else 0.0
+    split = max(min(fixed) / _SPLIT, _FINEST_M) if fixed else 0.0
     if finest >= split:
         return [_Panel(finest / _SPLIT, highest)]
     bound_is_near = finest / _BAND_WITHIN < bound_m < finest

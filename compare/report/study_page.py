@@ -15,7 +15,7 @@ from .folder import Report
 from .page import Html, facts, figure, findings, join, page, paragraph, section
 from .pareto import curves, of_digits, rows_of, sentences
 
-TEXTS = texts_of(__file__)
+_TEXTS = texts_of(__file__)
 
 
 def page_text(document: dict[str, Any]) -> str:
@@ -52,7 +52,7 @@ def _main_results(document: dict[str, Any]) -> Html:
 def _how_measured(limit_s: float) -> list[Html]:
     limit = f"{limit_s:g} CPU seconds"
     values = {"limit": limit, "repeat_s": REPEAT_S, "repeats": REPEATS}
-    return [paragraph(text.format(**values)) for text in TEXTS["measured"]]
+    return [paragraph(text.format(**values)) for text in _TEXTS["measured"]]
 
 
 def _lead(document: dict[str, Any]) -> Html:
@@ -67,15 +67,15 @@ def _lead(document: dict[str, Any]) -> Html:
         "machine": f"{machine['processor']}, {machine['system']}",
         "versions": ", ".join(f"{name} {text}" for name, text in versions.items()),
     }
-    return join([paragraph(TEXTS["lead"]), facts(details)])
+    return join([paragraph(_TEXTS["lead"]), facts(details)])
 
 
 def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
     if missing(["matplotlib"]):
-        return [section("Pictures", paragraph(TEXTS["no_pictures"]))]
+        return [section("Pictures", paragraph(_TEXTS["no_pictures"]))]
     from . import study_charts
 
-    charts = TEXTS["pictures"]
+    charts = _TEXTS["pictures"]
     if of_digits(rows, bound_m):
         charts = {"precision_ladder": charts["precision_ladder"]}
     pictures = []

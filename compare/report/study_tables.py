@@ -23,14 +23,14 @@ from ..studies.users_program import FILE
 from .page import Html, PageTable, strong
 from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, sentences, tidy
 
-FRONT_MARK = "●"
-PART_MARK = "~"
-ABSENT = "–"
+_FRONT_MARK = "●"
+_PART_MARK = "~"
+_ABSENT = "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
-MAX_LOAD = 1.0
+_MAX_LOAD = 1.0
 # difference of repeated costs over their median; with more, ratios of costs are doubtful
-MAX_SPREAD = 0.2
+_MAX_SPREAD = 0.2
 
 # the columns of the table of all rows; the reason of a failure follows
 _TEXT_COLUMNS = ("", "method", "formulation", "setting", "status")
@@ -47,7 +47,7 @@ _NUMBER_COLUMNS = (
     "last t, s",
 )
 
-CAPTIONS = texts_of(__file__)
+_CAPTIONS = texts_of(__file__)
 
 
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
@@ -75,7 +75,7 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
             cells.append(strong(cpu(cpu_s)) if is_cheapest else cpu(cpu_s))
         table.append([label, *cells])
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return PageTable(columns, table).html(CAPTIONS["costs"])
+    return PageTable(columns, table).html(_CAPTIONS["costs"])
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -86,7 +86,7 @@ def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
         for row in front(rows, bound_m)
     ]
     columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
-    return PageTable(columns, cells).html(CAPTIONS["front"])
+    return PageTable(columns, cells).html(_CAPTIONS["front"])
 
 
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
@@ -112,13 +112,13 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
             row_classes.append(" ".join(classes))
             cells = _cells_of(row, on_front)
             table.append([cells[name] for name in columns])
-    return PageTable(columns, table, row_classes).html(CAPTIONS["rows"])
+    return PageTable(columns, table, row_classes).html(_CAPTIONS["rows"])
 
 
 def _cells_of(row: Row, on_front: bool) -> dict[str, str]:
     """Return everything that was measured of a row, by the title of its column."""
     return {
-        "": FRONT_MARK if on_front else "",
+        "": _FRONT_MARK if on_front else "",
         "method": row.method,
         "formulation": row.formulation,
         "setting": setting(row),
@@ -150,7 +150,7 @@ def failures(rows: Sequence[Row]) -> Html | None:
         settings = ", ".join(setting(row) for _, row in group)
         cells.append((label, settings, status.words, reached, reason))
     columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
-    return PageTable(columns, cells, ["failed"] * len(cells)).html(CAPTIONS["failed"])
+    return PageTable(columns, cells, ["failed"] * len(cells)).html(_CAPTIONS["failed"])
 
 
 def words(statuses: Collection[Status]) -> Html:
@@ -179,7 +179,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
     for name in dict.fromkeys(row.method for row in rows):
         if name in METHODS:
             method = METHODS[name]
-            declared = method.order or ABSENT
+            declared = method.order or _ABSENT
             orders_shown = (declared, observed(measured.get(name)))
             about = (method.source, method.licence, method.extra)
             table.append((name, method.title, *orders_shown, *about))
@@ -198,13 +198,13 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str]) ->
         "licence": "",
         "extra": "",
     }
-    return PageTable(columns, table).html(CAPTIONS["orders"])
+    return PageTable(columns, table).html(_CAPTIONS["orders"])
 
 
 def observed(order: ObservedOrder | None) -> str:
     """Return the order that runs show, with its standard error; a dash where they do not."""
     if order is None or order.observed is None:
-        return ABSENT
+        return _ABSENT
     return f"{order.observed:.2f} ± {order.standard_error:.2f}"
 
 
@@ -215,7 +215,7 @@ def _orders_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
     texts = []
     for order in declared:
         other = "" if usual[order.method] == order.formulation else f" ({order.formulation})"
-        texts.append(f"{order.method}{other} {order.declared or ABSENT}: {observed(order)}")
+        texts.append(f"{order.method}{other} {order.declared or _ABSENT}: {observed(order)}")
     return ["", *wrap(f"Order, declared: observed. {'; '.join(texts)}", 100)] if texts else []
 
 
@@ -231,7 +231,7 @@ def text_table(document: dict[str, Any]) -> str:
         "",
         *_measured_as_text(rows, bound_m),
         "",
-        f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span, so without its "
+        f"* on the Pareto front   {_PART_MARK} extrapolated from a part of the span, so without its "
         "error (see --limit)",
     ]
     statuses = {row.status for row in rows if row.failed}
@@ -274,7 +274,7 @@ def setting(row: Row | Cell) -> str:
     if row.setting is None:
         return ""
     if row.setting == 0:
-        return ABSENT
+        return _ABSENT
     return tidy(row.setting) + {"step": " s", "precision": " bits"}.get(row.kind, "")
 
 
@@ -300,7 +300,7 @@ def cpu(value: float | None) -> str:
 
 def cost(row: Row) -> str:
     """Return a row's CPU seconds, marked if they are extrapolated."""
-    mark = PART_MARK if row.status == Status.EXTRAPOLATED else ""
+    mark = _PART_MARK if row.status == Status.EXTRAPOLATED else ""
     return f"{mark}{cpu(row.cpu_s)}"
 
 
@@ -329,8 +329,8 @@ def busy(rows: Sequence[Row | Cell]) -> str:
         )
     text = "; ".join(measured) or "not known"
     doubt = "ratios of costs drift too, most where vectors are wide (AVX-512)"
-    if load > MAX_LOAD:
+    if load > _MAX_LOAD:
         return f"{text}. The machine was busy: {doubt}"
-    if spread > MAX_SPREAD:
+    if spread > _MAX_SPREAD:
         return f"{text}. Costs were uneven: {doubt}"
     return text

@@ -25,17 +25,26 @@ from ..score.verdict import REFUSED, Outcome, percent
 from .folder import CSV, PAGE, check_folder, json_text, write_file, write_files
 from .page import Html, PageTable, findings, page, paragraph, section, text
 
-JSON = "suite.json"
-BADGE = "badge.svg"
+_JSON = "suite.json"
+_BADGE = "badge.svg"
 # of rows.csv
-KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")
-SUMMARY = "GITHUB_STEP_SUMMARY"
-SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}  # from best to worst
-LABEL = "Foucault pendulum"
-DISAGREES = 1  # the exit status of what was judged and did not pass
+_KEYS = (
+    "scene",
+    "candidate",
+    "verdict",
+    "covered",
+    "max_error_m",
+    "digits",
+    "tolerance_m",
+    "error",
+)
+_SUMMARY = "GITHUB_STEP_SUMMARY"
+_SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}  # from best to worst
+_LABEL = "Foucault pendulum"
+_DISAGREES = 1  # the exit status of what was judged and did not pass
 # white text on these has a contrast above 5 to 1
-GOOD = "#2f7d32"
-BAD = "#b3261e"
+_GOOD = "#2f7d32"
+_BAD = "#b3261e"
 _WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
 _MARGIN = 8
 
@@ -49,7 +58,7 @@ def suite_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "agree": _agreeing(outcomes),
         "digits": _fewest_digits(outcomes),
         "data": DATA_VERSION,
-        "verdict": max((outcome.verdict for outcome in outcomes), key=[*SIGNS].index),
+        "verdict": max((outcome.verdict for outcome in outcomes), key=[*_SIGNS].index),
         "rows": [of_outcome(outcome) for outcome in outcomes],
     }
 
@@ -69,16 +78,16 @@ def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
 
 def check(out: Path) -> None:
     """Refuse a folder with somebody else's files before the work."""
-    check_folder(out, (JSON, CSV, PAGE, BADGE))
+    check_folder(out, (_JSON, CSV, PAGE, _BADGE))
 
 
 def write(outcomes: Sequence[Outcome], out: Path) -> None:
     """Write page, badge, JSON and CSV into a folder."""
     document = suite_document(outcomes)
     contents = {
-        CSV: PageTable.of_records(KEYS, document["rows"]).csv(),
-        JSON: json_text(document),
-        BADGE: badge(outcomes),
+        CSV: PageTable.of_records(_KEYS, document["rows"]).csv(),
+        _JSON: json_text(document),
+        _BADGE: badge(outcomes),
         PAGE: page_text(outcomes),
     }
     write_files(out, contents)
@@ -97,13 +106,13 @@ def message(outcomes: Sequence[Outcome]) -> str:
 def badge(outcomes: Sequence[Outcome]) -> str:
     """Return the badge as SVG; the same outcomes give the same bytes."""
     right = message(outcomes)
-    title = escape(f"{LABEL}: {right}")
-    colour = GOOD if _agreeing(outcomes) == len(outcomes) else BAD
-    label_width = round(len(LABEL) * _WIDTH)
+    title = escape(f"{_LABEL}: {right}")
+    colour = _GOOD if _agreeing(outcomes) == len(outcomes) else _BAD
+    label_width = round(len(_LABEL) * _WIDTH)
     message_width = round(len(right) * _WIDTH)
     first = label_width + 2 * _MARGIN
     second = message_width + 2 * _MARGIN
-    texts = _badge_text(_MARGIN, label_width, LABEL)
+    texts = _badge_text(_MARGIN, label_width, _LABEL)
     texts += _badge_text(first + _MARGIN, message_width, right)
     places = {"first": first, "second": second, "whole": first + second}
     drawing = files(__package__).joinpath("badge.svg").read_text(encoding="utf-8")
@@ -201,7 +210,7 @@ def summary(outcomes: Sequence[Outcome]) -> str:
         errors = None if outcome.score is None else outcome.score.errors
         numbers = ("", "") if errors is None else (f"{errors.max_m:.3g} m", f"{errors.digits:.1f}")
         names = [f"`{name.replace('`', chr(39))}`" for name in (outcome.scene, outcome.name)]
-        cells = [SIGNS[outcome.verdict], *names, outcome.verdict, *numbers]
+        cells = [_SIGNS[outcome.verdict], *names, outcome.verdict, *numbers]
         rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         if outcome.verdict != "agrees" or outcome.since is not None:
             fence = "\n".join(line.replace("```", "'''") for line in outcome.lines)
@@ -217,11 +226,11 @@ def append_summary(text: str) -> None:
     Raises:
         InputError: the summary cannot be written.
     """
-    name = os.environ.get(SUMMARY)
+    name = os.environ.get(_SUMMARY)
     if not name:
         return
     path = Path(name)
-    with usable(SUMMARY, path, "a file that can be written to"), path.open("ab") as stream:
+    with usable(_SUMMARY, path, "a file that can be written to"), path.open("ab") as stream:
         stream.write(text.encode(errors="backslashreplace"))
 
 
@@ -232,7 +241,7 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
         InputError: the file cannot be written.
     """
     failed = [outcome.exit_status for outcome in outcomes if outcome.exit_status]
-    failures = failed.count(DISAGREES)
+    failures = failed.count(_DISAGREES)
     counts = {
         "tests": str(len(outcomes)),
         "failures": str(failures),
@@ -250,7 +259,7 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
         if outcome.exit_status == 0:
             result = ElementTree.SubElement(case, "system-out")
         else:
-            word = "failure" if outcome.exit_status == DISAGREES else "error"
+            word = "failure" if outcome.exit_status == _DISAGREES else "error"
             message_line = lines[0] if outcome.since is None else lines[1]
             result = ElementTree.SubElement(case, word, {"message": message_line})
         result.text = "\n".join(lines)

@@ -352,13 +352,13 @@ def _rest(scene: Scene) -> tuple[float, float]:
 
 def _decides(score: Score) -> bool:
     """Return whether a more accurate truth would leave the verdict as it is."""
-    if in_doubt(score):
+    if _in_doubt(score):
         return False
     is_dataset = isinstance(score.golden, Golden)  # proved or confirmed, far below any tolerance
     return is_dataset or score.errors.bound_m <= _ROUGHLY * score.tolerance_m
 
 
-def in_doubt(score: Score) -> bool:
+def _in_doubt(score: Score) -> bool:
     """Return whether the reference's own error could change the verdict."""
     errors_m = [score.errors.max_m]
     if score.transits is not None:

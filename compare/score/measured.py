@@ -18,7 +18,7 @@ from ..truth import Report
 from .clock_start import SUBTRACT, Ends, clock_starts, starts_in_words
 
 DISAGREES = "disagrees"
-INSIDE = "cannot be told apart"
+_INSIDE = "cannot be told apart"
 SWING = 7.0  # times sqrt(l/g): a little more than a period
 
 # of the numbers outside, those in the lines for people: the farthest of each column first
@@ -86,7 +86,7 @@ class Measured:
     @property
     def verdict(self) -> str:
         """'cannot be told apart', or 'disagrees'."""
-        return DISAGREES if self.outside else INSIDE
+        return DISAGREES if self.outside else _INSIDE
 
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""

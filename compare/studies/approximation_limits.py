@@ -23,7 +23,7 @@ LIMITS = (
     ("1 arcsec", "plane_error_arcsec", 1.0),
 )
 SWEEP_S = 3600.0
-LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
+_LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # m, of a sweep
 UNITS: dict[str, str] = {"time": "s", "amplitude": "m", "latitude": "degrees", "length": "m"}
 _DIGITS = 40  # of a release as it is written into a scene
 # Extra times in geometric progression: they locate a limit that is exceeded within the first swing.
@@ -61,7 +61,7 @@ def sweep_values(scene: Scene, over: str) -> Sequence[float]:
         return [float(v) for v in np.geomspace(1e-5, 0.1, 9) * float(scene.exact.length)]
     if over == "latitude":
         return [float(v) for v in range(-90, 91, 15)]
-    return LENGTHS
+    return _LENGTHS
 
 
 def sweep(scene: Scene, chosen: Sequence[Motion], over: str, t: float) -> list[SweepRow]:

@@ -35,11 +35,11 @@ from .row import grouped
 # changes when equal runs are measured or judged otherwise, so that old results are not used again
 JUDGED = 3
 # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
-STARTING_S = 180.0
+_STARTING_S = 180.0
 # that are always there, besides those that methods require
-LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}
-DISTRIBUTIONS = {"sksundae": "scikit-sundae"}  # of modules that are called otherwise
-ONE_THREAD = {
+_LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}
+_DISTRIBUTIONS = {"sksundae": "scikit-sundae"}  # of modules that are called otherwise
+_ONE_THREAD = {
     **dict.fromkeys(
         ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
     ),
@@ -179,11 +179,11 @@ def _isolated(
     while remaining:
         env = {
             name: value
-            for name, value in ONE_THREAD.items()
+            for name, value in _ONE_THREAD.items()
             if name != "XLA_FLAGS" or not os.environ.get(name)
         }
         worker = Worker(measured, measurement, remaining, env=env)
-        starting_s, patience_s = STARTING_S, measurement.patience_s
+        starting_s, patience_s = _STARTING_S, measurement.patience_s
         try:
             while remaining:
                 # where processes share a core, all take longer
@@ -210,7 +210,7 @@ def machine() -> dict[str, str]:
     description = {"processor": _processor(), "system": f"{platform.system()} {platform.machine()}"}
     description["python"] = platform.python_version()
     required = {module for method in METHODS.values() for module in method.requires}
-    for name in sorted(LIBRARIES | {DISTRIBUTIONS.get(module, module) for module in required}):
+    for name in sorted(_LIBRARIES | {_DISTRIBUTIONS.get(module, module) for module in required}):
         try:
             description[name] = version(name)
         except PackageNotFoundError:

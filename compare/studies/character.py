@@ -23,9 +23,9 @@ from reference.status import Status
 from .row import Row
 
 # rate times step up to which an explicit method of order 5 to 8 is stable, about
-EXPLICIT_REACH = 3.3
-SAMPLES = 64  # states of the trajectory at which rates are measured
-IN_DOUBLE = 1e6  # what is magnified no more than this is followed in double
+_EXPLICIT_REACH = 3.3
+_SAMPLES = 64  # states of the trajectory at which rates are measured
+_IN_DOUBLE = 1e6  # what is magnified no more than this is followed in double
 _NUDGE = 1e-6  # relative displacement of the central differences
 
 
@@ -74,7 +74,7 @@ def character(scene: Scene, times: Array, states: Array) -> Character:
     """
     k = constants_in_double(scene.exact)
     length = float(k.length)
-    chosen = np.unique(np.linspace(0, len(times) - 1, SAMPLES).astype(int))
+    chosen = np.unique(np.linspace(0, len(times) - 1, _SAMPLES).astype(int))
     scaled = states / length
     rates = np.array([np.linalg.eigvals(_tangent_jacobian(state, k)) for state in scaled[chosen]])
     sizes = np.abs(rates)
@@ -129,7 +129,7 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
         at_release = 1.0 if name in ("release.x", "release.y") else float(sizes[0])
         if at_release > 1e-12 * length:
             factors.append(float(sizes.max()) / at_release)
-    if max(factors) <= IN_DOUBLE:
+    if max(factors) <= _IN_DOUBLE:
         return max(factors)
     try:
         return max(
@@ -181,7 +181,7 @@ def reason_of(
 
 def _causes(row: Row, status: Status, traits: Character) -> Iterator[str]:
     if traits.stiff:
-        steps = traits.damping * traits.span / EXPLICIT_REACH
+        steps = traits.damping * traits.span / _EXPLICIT_REACH
         text = f"stiff: rates up to {traits.damping:.2g}/s, a factor of {traits.ratio:.1g} apart"
         yield f"{text}, so that a method whose step is bound by the fastest rate needs about {steps:.1g} steps"
     if row.formulation in ("angles", "lagrangian") and traits.nearest < 1e-3:

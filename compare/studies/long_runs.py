@@ -28,13 +28,13 @@ from .row import FAILURES, failure
 from .study_plan import Item
 
 SCENE = "paris_30d"
-TRUTH_DIGITS = 36  # enough to judge runs in 113 bits
-TRUTH_LEVEL = "self_consistent"  # confirming it takes heyoka twenty minutes, which was done once
-LAWS = {"t": 1.0, "t^1.5": 1.5, "t^2": 2.0}
-PATIENCE_S = 1800.0  # wall-clock time for one method
+_TRUTH_DIGITS = 36  # enough to judge runs in 113 bits
+_TRUTH_LEVEL = "self_consistent"  # confirming it takes heyoka twenty minutes, which was done once
+_LAWS = {"t": 1.0, "t^1.5": 1.5, "t^2": 2.0}
+_PATIENCE_S = 1800.0  # wall-clock time for one method
 FROM = 1 / 40  # the exponent of time is fitted from this part of the run to its end
 DAY_S = 86400.0
-PARTS = 24  # points of the fitted curve, equally far apart in log t
+_PARTS = 24  # points of the fitted curve, equally far apart in log t
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class LongRun:
         t = np.array(self.t)
         largest = np.maximum.accumulate(np.array(self.error_m))
         fitted = (t >= FROM * t[-1]) & (largest > 0)
-        if fitted.sum() < PARTS:
+        if fitted.sum() < _PARTS:
             return None
-        return power_of_time(t[fitted], largest[fitted], PARTS)
+        return power_of_time(t[fitted], largest[fitted], _PARTS)
 
     @property
     def law(self) -> str | None:
@@ -79,7 +79,7 @@ class LongRun:
         exponent = self.exponent
         if exponent is None:
             return None
-        return min(LAWS, key=lambda word: abs(LAWS[word] - exponent))
+        return min(_LAWS, key=lambda word: abs(_LAWS[word] - exponent))
 
     def document(self) -> dict[str, Any]:
         """Return the JSON document."""
@@ -106,13 +106,13 @@ def long_runs(
     solving = reports.solving
     golden = golden_of(
         scene,
-        TRUTH_DIGITS,
+        _TRUTH_DIGITS,
         Progress(report=solving and (lambda t: solving(t / DAY_S, days))),
-        level=TRUTH_LEVEL,
+        level=_TRUTH_LEVEL,
         grid=True,
     )
     recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
-    runs = _LongRuns(recipe, PATIENCE_S, {}, scene, golden.path)
+    runs = _LongRuns(recipe, _PATIENCE_S, {}, scene, golden.path)
     return campaign(runs, items, journal_path=journal_path, report=reports.measuring)
 
 

@@ -30,13 +30,15 @@ from ..methods.rhs.problem import Problem, suited
 from .campaign import Item, Measurement, Result, load_per_core
 from .row import FAILURES, GridTruth, Row, failure, h_drift
 
-PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cost
-LEAST_ROWS = 4  # grid rows in any span
+_PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cost
+_LEAST_ROWS = 4  # grid rows in any span
 REPEAT_S = 1.0  # a run is repeated while the CPU time spent on its setting stays below this,
 REPEATS = 5  # and at most this often
 # transit times need a second, untimed run, which is made only if the first took at most this long
-TRANSIT_S = 3.0
-MISSED = 0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
+_TRANSIT_S = 3.0
+_MISSED = (
+    0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
+)
 
 
 @dataclass(frozen=True)
@@ -87,8 +89,8 @@ class Bench:
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
         rows = min(len(times), longest)
 
-        probe_rows = min(longest, max(LEAST_ROWS, len(times) // PROBE))
-        probe = self._run(base, method, probe_rows, repeats=2, budget_s=2 * self.limit_s / PROBE)
+        probe_rows = min(longest, max(_LEAST_ROWS, len(times) // _PROBE))
+        probe = self._run(base, method, probe_rows, repeats=2, budget_s=2 * self.limit_s / _PROBE)
         probe_s = min(probe.costs_s)  # the first run warms up
         probe = replace(probe, costs_s=[probe_s])
         expected_s = probe_s * float(times[-1] / probe.times[-1])
@@ -164,7 +166,7 @@ class Bench:
             return replace(row, status=Status.EXTRAPOLATED, reason=reason, **measured)
         row = self._row_of(run.row, run.outcome, cpu_s)
         row = replace(row, reason="", error_m=float(errors_m.max()), **measured)
-        if self.transits and cpu_s <= TRANSIT_S:
+        if self.transits and cpu_s <= _TRANSIT_S:
             return self._with_transits(row, method)
         return row
 
@@ -179,7 +181,7 @@ class Bench:
             return row
         errors_s, floor_s = self.truth.transit_errors(self.scene, outcome)
         gaps = np.diff(transits, prepend=0.0, append=np.inf)
-        missed = errors_s > MISSED * np.minimum(gaps[1:], gaps[:-1])
+        missed = errors_s > _MISSED * np.minimum(gaps[1:], gaps[:-1])
         if missed.any():
             first_s = float(transits[np.argmax(missed)])
             text = (

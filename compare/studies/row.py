@@ -23,7 +23,7 @@ T = TypeVar("T")
 K = TypeVar("K")
 ColumnValues: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
-H_ROWS = 64  # rows at which h is evaluated
+_H_ROWS = 64  # rows at which h is evaluated
 _ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax
 _NUDGE = 1e-6  # of the time in which the motion changes
 
@@ -189,7 +189,7 @@ def h_drift(scene: Scene, outcome: RunOutcome) -> float | None:
 
     values = []
     largest_kinetic = ctx.mpf(0)
-    for i in np.unique(np.linspace(0, len(columns[0]) - 1, H_ROWS).astype(int)):
+    for i in np.unique(np.linspace(0, len(columns[0]) - 1, _H_ROWS).astype(int)):
         state = [number(column[i]) / k.length for column in columns]
         n = tuple(state[:3])
         v = tuple(state[3:])

@@ -32,15 +32,15 @@ from .row import GridTruth, Row
 from .study_plan import declared, on_doubles
 
 LIMIT_S = 3.0  # CPU seconds of a cell
-PATIENCE = 5  # wall-clock limit of a cell, in multiples of the CPU limit
+_PATIENCE = 5  # wall-clock limit of a cell, in multiples of the CPU limit
 SWINGS = 64  # longer scenes are cut to this many small swings; `long_runs` covers long spans
 WRONG = 1000  # an error above this multiple of the requested one is a failure
-LOST_BITS = 20  # a method of fixed precision may lose this many bits to rounding
-TRUTH_DIGITS = 34  # six more than are asked of the finest method
+_LOST_BITS = 20  # a method of fixed precision may lose this many bits to rounding
+_TRUTH_DIGITS = 34  # six more than are asked of the finest method
 _EXACT = 40.0  # digits of a run without any error
 
 # method or program, formulation and setting as the method declares them, and the scene
-Item = tuple[str, str | None, float, str]
+_Item = tuple[str, str | None, float, str]
 
 
 @dataclass(frozen=True)
@@ -139,12 +139,12 @@ def stability(
     cuts = {name: cut(load_scene(name)) for name in names}
     solved_scenes, unsolved = _solved(cuts, reports.solving)
 
-    items: list[Item] = [(*run, name) for run in runs for name in cuts]
+    items: list[_Item] = [(*run, name) for run in runs for name in cuts]
     solved = [item for item in items if item[-1] in solved_scenes]
 
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
     recipe = [limit_s, SWINGS, orders]  # orders decide the digits asked for
-    cells = _Cells(recipe, PATIENCE * limit_s, commands, solved_scenes, limit_s)
+    cells = _Cells(recipe, _PATIENCE * limit_s, commands, solved_scenes, limit_s)
     measured = campaign(cells, solved, journal_path=journal_path, report=reports.measuring)
     finished = dict(zip(solved, measured, strict=True))
     return [
@@ -162,7 +162,7 @@ def _solved(
     for count, (name, scene) in enumerate(scenes.items()):
         report = solving and partial(_report_time, solving, count, len(scenes), scene)
         try:
-            golden = golden_of(scene, TRUTH_DIGITS, Progress(report=report), grid=True)
+            golden = golden_of(scene, _TRUTH_DIGITS, Progress(report=report), grid=True)
             times = GridTruth(golden, float(scene.exact.t_end)).times
             states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
             traits = character(scene, times, states)
@@ -182,7 +182,7 @@ def _report_time(
 
 
 @dataclass(frozen=True)
-class _Cells(Measurement[Item, Cell]):
+class _Cells(Measurement[_Item, Cell]):
     """Methods and programs on scenes."""
 
     scenes: Mapping[str, SolvedScene]
@@ -190,7 +190,7 @@ class _Cells(Measurement[Item, Cell]):
 
     kind = Cell
 
-    def measure(self, item: Item) -> Cell:
+    def measure(self, item: _Item) -> Cell:
         name, formulation, setting, scene_id = item
         solved = self.scenes[scene_id]
         scene = solved.scene
@@ -216,7 +216,7 @@ class _Cells(Measurement[Item, Cell]):
         reason = f"From t = {wrong_from_s:g} s on it is wrong. {cell.reason}"
         return replace(cell, reason=reason, wrong_from_s=wrong_from_s)
 
-    def failed(self, item: Item, status: Status, reason: str) -> Cell:
+    def failed(self, item: _Item, status: Status, reason: str) -> Cell:
         method, formulation, setting, scene = item
         if method in METHODS:
             kind = METHODS[method].setting
@@ -231,7 +231,7 @@ class _Cells(Measurement[Item, Cell]):
             scene, method, precision, status, None, requested, None, reason, setting=used, kind=kind
         )
 
-    def _judged(self, item: Item, row: Row, traits: Character, amplitude_m: float) -> Cell:
+    def _judged(self, item: _Item, row: Row, traits: Character, amplitude_m: float) -> Cell:
         """Return the cell of a run; its digits are those of the error relative to the amplitude."""
         requested = digits_requested(item[0], item[2])
         digits = _digits_kept(row.error_m, amplitude_m)
@@ -284,7 +284,7 @@ def digits_requested(method: str, setting: float) -> float:
     kind = METHODS[method].setting
     order = METHODS[method].order
     if kind == "precision":
-        return (setting - LOST_BITS) * math.log10(2)
+        return (setting - _LOST_BITS) * math.log10(2)
     if kind == "tolerance" or order is None:
         return -math.log10(setting)
     return -order * math.log10(2 * math.pi * setting)

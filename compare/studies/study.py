@@ -28,11 +28,11 @@ from .study_plan import Item, on_doubles, plan
 from .users_program import FILE, file_row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
-PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
+_PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
 # standard error up to which an order is told from its neighbours: twice that is half an order
-DISTINGUISHED = 0.25
+_DISTINGUISHED = 0.25
 # errors within this factor of a method's least are taken for rounding, or for the reference's bound
-ABOVE_LEAST = 10.0
+_ABOVE_LEAST = 10.0
 # by name: what a file holds, and the CPU seconds that are stated
 Files = Mapping[str, tuple[Candidate, float | None]]
 
@@ -155,7 +155,7 @@ def study(
     golden = golden_of(problem, digits or problem.run.digits, progress, grid=True)
     commands = programs or {}
     recipe = [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s]
-    runs = _MethodRuns(recipe, PATIENCE * limit_s, commands, problem, golden.path, limit_s)
+    runs = _MethodRuns(recipe, _PATIENCE * limit_s, commands, problem, golden.path, limit_s)
     chosen = plan(requested, methods, formulations) if items is None else items
     rows = campaign(runs, chosen, journal_path=journal_path, report=report)
     rows += [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
@@ -196,7 +196,7 @@ def orders(rows: Sequence[Row], bound_m: float) -> list[ObservedOrder]:
 
 
 def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -> ObservedOrder:
-    laws = [law for law in _laws(rows, bound_m) if law.standard_error <= DISTINGUISHED]
+    laws = [law for law in _laws(rows, bound_m) if law.standard_error <= _DISTINGUISHED]
     law = max(laws, key=lambda law: (law.points, -law.standard_error), default=None)
     observed = () if law is None else (-law.exponent, law.standard_error, law.points)
     return ObservedOrder(method, formulation, _declared(method), *observed)
@@ -227,7 +227,7 @@ def _laws(rows: Sequence[Row], bound_m: float) -> Iterator[PowerLaw]:
             points.append((count, row.error_m))
     points.sort()
     least = max(bound_m, min((error for _, error in points), default=0.0))
-    above = [point for point in points if point[1] > ABOVE_LEAST * least]
+    above = [point for point in points if point[1] > _ABOVE_LEAST * least]
     for first in range(len(above)):
         for end in range(first + LEAST_POINTS, len(above) + 1):
             counts, errors = zip(*above[first:end], strict=True)

@@ -15,13 +15,13 @@ from ..methods import METHODS
 from ..methods.method import Method, available
 from ..methods.rhs.problem import suited
 
-FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
-FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
+_FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
+_FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
 # longer scenes are cut to this, unless an end is given; over less, what a run costs at all hides digits
 SPAN_S = 14_400
-MOST_BITS = 4096
-SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
-STEP_BITS = 12  # bits of a step's mantissa: its first 2**41 multiples are doubles
+_MOST_BITS = 4096
+_SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
+_STEP_BITS = 12  # bits of a step's mantissa: its first 2**41 multiples are doubles
 
 T = TypeVar("T")
 Item = tuple[str, str, float]  # method, formulation, setting
@@ -40,7 +40,7 @@ def plan(
     Raises:
         InputError: an unknown method, none that can run here, or a number that no double holds.
     """
-    check_usable(methods)
+    _check_usable(methods)
     scene = scene.with_values(["inputs=binary64"])
     items: list[Item] = []
     for name in methods or METHODS:
@@ -49,11 +49,13 @@ def plan(
             (name, suited(scene, method.formulations), setting)
             for setting in method.settings(scene)
         ]
-    if formulations and (methods is None or FORMULATIONS_OF in methods):
-        method = METHODS[FORMULATIONS_OF]
-        words = [word for word in FORMULATIONS if word in method.formulations]
+    if formulations and (methods is None or _FORMULATIONS_OF in methods):
+        method = METHODS[_FORMULATIONS_OF]
+        words = [word for word in _FORMULATIONS if word in method.formulations]
         items += [
-            (FORMULATIONS_OF, word, setting) for word in words for setting in method.settings(scene)
+            (_FORMULATIONS_OF, word, setting)
+            for word in words
+            for setting in method.settings(scene)
         ]
     return list(dict.fromkeys(items))
 
@@ -97,7 +99,7 @@ def _runs(
     these: str,
 ) -> dict[str, Sequence[Any]]:
     """Return what each method declares; refuse one that declares nothing, and name those that do."""
-    check_usable(methods)
+    _check_usable(methods)
     runs = {name: runs_of(METHODS[name]) for name in methods or METHODS}
     without = [name for name in methods or () if not runs[name]]
     if without:
@@ -106,7 +108,7 @@ def _runs(
     return runs
 
 
-def check_usable(methods: Sequence[str] | None) -> None:
+def _check_usable(methods: Sequence[str] | None) -> None:
     """Refuse methods none of which can run here; None is all.
 
     Raises:
@@ -130,8 +132,8 @@ def bits_of(text: str) -> list[int]:
         InputError: they are not whole numbers from 53 to 4096.
     """
     precisions = sorted({*parsed(text.split(","), int)})
-    if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > MOST_BITS:
-        expected = f"bits from {DOUBLE_BITS} to {MOST_BITS}, such as 53,64,113,256,512"
+    if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > _MOST_BITS:
+        expected = f"bits from {DOUBLE_BITS} to {_MOST_BITS}, such as 53,64,113,256,512"
         raise InputError("--precisions", text, expected, "Separate them by commas.")
     return precisions
 
@@ -152,7 +154,7 @@ def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Sce
         bits: the precisions, increasing.
         whole: whether to keep the scene's whole span.
     """
-    digits = math.ceil(bits[-1] * math.log10(2)) + SPARE_DIGITS
+    digits = math.ceil(bits[-1] * math.log10(2)) + _SPARE_DIGITS
     if whole or scene.exact.t_end <= SPAN_S:
         return scene, digits
     return scene.with_values([f"run.t_end={SPAN_S}"]), digits
@@ -172,6 +174,6 @@ def on_doubles(scene: Scene) -> Scene:
     if all(Fraction(float(t)) == t for t in inputs.grid):
         return scene
     mantissa, exponent = math.frexp(float(inputs.grid_step))
-    step = Fraction(round(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
+    step = Fraction(round(mantissa * 2**_STEP_BITS)) * Fraction(2) ** (exponent - _STEP_BITS)
     exact = (f"{Decimal(float(value)):f}" for value in (step, inputs.t_end))
     return scene.with_values(dict(zip(("run.grid_step", "run.t_end"), exact, strict=True)))

@@ -29,10 +29,10 @@ from .study_plan import parsed
 
 # that a program is asked for: the millionth of the amplitude that `foucault score` allows
 DIGITS = 6.0
-PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
+_PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
 NUMBER = "program"  # what stands for a program's number type
 FILE = "file"  # kind of the row of a file, which has no setting; in place of its formulation
-STATUSES = {
+_STATUSES = {
     OutOfTimeError: Status.OUT_OF_TIME,
     NotFiniteError: Status.NOT_FINITE,
     CrashedError: Status.CRASHED,
@@ -74,13 +74,13 @@ def measured(
     base = Row(program.name, NUMBER, step_s, "step", scene.inputs, Status.OK, load=load_per_core())
     try:
         words = arguments(program.command.replace(SETTING, repr(step_s)), scene)
-        output, cpu_s, _ = run_program(words, PATIENCE * program.limit_s)
+        output, cpu_s, _ = run_program(words, _PATIENCE * program.limit_s)
         with output:
             candidate = read_stream(output, "its output")
         return _against(base, candidate, cpu_s, scene, golden, wrong_m)
     except InputError as error:
         reason = f"{error.field}: {error.got}" if isinstance(error, NotFiniteError) else str(error)
-        return replace(base, status=STATUSES.get(type(error), Status.GAVE_UP), reason=reason), None
+        return replace(base, status=_STATUSES.get(type(error), Status.GAVE_UP), reason=reason), None
 
 
 def files_of(

@@ -24,11 +24,11 @@ from ...studies.row import Row
 from ...studies.stability import Cell
 from ..pareto import rows_of
 
-LONGEST_REASON = 160  # characters of an error message: pydantic has one line for each row
+_LONGEST_REASON = 160  # characters of an error message: pydantic has one line for each row
 # fields that a cell of docs/studies leaves out
-NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}
+_NOT_KEPT = {"digits": None, "cpu_s": None, "reason": ""}
 # fields of a scene that make no difference to a score
-KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}
+_KEPT = {"run.digits", "run.level", "run.grid_step", "run.transits"}
 # what a file that is not a study may raise
 _UNREADABLE = (
     InputError,
@@ -131,7 +131,7 @@ def _options_of(assignments: Iterable[str]) -> Iterator[str]:
         field, _, value = assignment.partition("=")
         if field == "run.t_end":
             yield f"--t-end {value}"
-        elif field not in KEPT:
+        elif field not in _KEPT:
             yield f"--set {assignment}"
 
 
@@ -200,14 +200,14 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
 def _reason(error: Exception) -> str:
     if isinstance(error, InputError):
         return error.advice
-    return f"{shortened(str(error), LONGEST_REASON)}."
+    return f"{shortened(str(error), _LONGEST_REASON)}."
 
 
 def _add_study(document: dict[str, Any], results: defaultdict[str, StudyResults]) -> None:
     """Add the results in a study's document: a study of one scene, or runs of the same digits."""
     scene = document.get("scene")
     if scene is None:
-        rows = [NOT_KEPT | row for row in document["rows"]]
+        rows = [_NOT_KEPT | row for row in document["rows"]]
         for cell in TypeAdapter(list[Cell]).validate_python(rows):
             results[cell.scene].same_digits.setdefault(run_name(cell), cell)
     elif document["t_end"] > results[scene].span_s:

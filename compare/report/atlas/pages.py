@@ -23,11 +23,11 @@ from ..page import Html, page, paragraph, section, text
 from . import parts
 from .entry import Entry, entries
 
-EVALUATOR = "function.mjs"
-MOST_EMBEDDED = 500_000  # characters of coefficients in a page; more are in a script beside it
-PLAIN = "Begin here: pendulums as they hang"  # scenes without flags, but for a long run
+_EVALUATOR = "function.mjs"
+_MOST_EMBEDDED = 500_000  # characters of coefficients in a page; more are in a script beside it
+_PLAIN = "Begin here: pendulums as they hang"  # scenes without flags, but for a long run
 # and the others: each stands in the first group that has one of its flags, or in the last
-GROUPS = {
+_GROUPS = {
     "Wide swings, and over the top": {"large_angle"},
     "Drag": {"damped", "stiff"},
     "Fast rotation, no gravity": {"fast_rotation", "weightless"},
@@ -38,7 +38,7 @@ GROUPS = {
 
 def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
     """Return the page over all scenes, sorted by id: a thumbnail of each, in groups."""
-    cards: dict[str, list[str]] = {name: [] for name in (PLAIN, *GROUPS)}
+    cards: dict[str, list[str]] = {name: [] for name in (_PLAIN, *_GROUPS)}
     for entry, thumb in zip(scenes, thumbs, strict=True):
         cards[_group(entry)].append(_card(entry, thumb))
     datasets = sum(len(entry.datasets) for entry in scenes)
@@ -63,9 +63,9 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
 def _group(entry: Entry) -> str:
     flags = {*entry.flags} - {"long"}
     return (
-        next((name for name, group in GROUPS.items() if flags & group), [*GROUPS][-1])
+        next((name for name, group in _GROUPS.items() if flags & group), [*_GROUPS][-1])
         if flags
-        else PLAIN
+        else _PLAIN
     )
 
 
@@ -193,7 +193,7 @@ def _script(*names: str, kind: str = "page") -> Html:
 @cache
 def source(name: str) -> str:
     """Return a style, a script or a part of a page; of the program in docs/readers the function that evaluates."""
-    if name == EVALUATOR:
+    if name == _EVALUATOR:
         folder = data_root().parent / "docs" / "readers" if in_checkout() else files(__package__)
         program = folder.joinpath(name).read_text(encoding="utf-8")
         return str(
@@ -234,7 +234,7 @@ def build(
         motion = PicturedMotion.of_golden(entry.golden)
         function = parts.golden_function(entry.judged)
         beside = None
-        if function and len(function["coefficients"]) > MOST_EMBEDDED:
+        if function and len(function["coefficients"]) > _MOST_EMBEDDED:
             beside = f"{entry.id}.function.js"
             numbers = json.dumps(function, separators=(",", ":"))
             pages[beside] = f"globalThis.goldenFunction = {numbers};\n"

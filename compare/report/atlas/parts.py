@@ -37,7 +37,7 @@ from ..page import Html, PageTable, facts, text
 from .entry import Entry, StudyResults, run_name
 
 # of the proof's THEOREM.md
-THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}
+_THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}
 _IMPORTED = {"IO", "UTC"}  # names in capitals that the modules of the vocabulary import
 
 
@@ -76,7 +76,7 @@ def certificate(golden: Golden) -> Mapping[str, str]:
     behind = [MEANING[manifest.level]]
     if manifest.enclosure is not None:
         proof = manifest.enclosure
-        theorem = THEOREMS.get(proof.method, proof.method)
+        theorem = _THEOREMS.get(proof.method, proof.method)
         behind.append(
             f"Before rounding every position is known to {proof.position_radius_m} m ({theorem}); "
             f"the run agrees with it to {proof.agreement_bits} bits."
