@@ -124,14 +124,7 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     scale, unit = time_unit(max(float(score.errors.t[-1]) for score in scores))
     lowest_m = max(_smallest_m(scores), bound_m / 30)
     top_m = max(10 * bound_m, largest_m)
-    # each line is thinner than those below it, so that two that coincide are both seen
-    widths = np.linspace(min(_LINE_WIDTH * len(scores), _WIDEST), _LINE_WIDTH, len(scores))
-    lines = []
-    for i, score in enumerate(scores):
-        t, error = _thinned(score.errors.t, np.maximum(score.errors.position, lowest_m))
-        name = shortened(Path(score.candidate.name).name, _LONGEST_NAME)
-        style = {**line_style(COLOURS[i % len(COLOURS)], i), "linewidth": widths[i]}
-        lines.append(ChartLine(name, (t * scale).tolist(), error.tolist(), style))
+    lines = _error_lines(scores, lowest_m, scale)
     end = max(line.x[-1] for line in lines)
     if tolerance_m < 100 * top_m:
         name = f"tolerance, {tolerance_m:.1e} m"
@@ -145,6 +138,19 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     band(axes, bound_m)
     draw(axes, lines)
     name_beside(axes, lines)
+
+
+def _error_lines(scores: Sequence[Score], lowest_m: float, scale: float) -> list[ChartLine]:
+    """Return the lines of the scores' errors, at least `lowest_m`, over times in another unit."""
+    # each line is thinner than those below it, so that two that coincide are both seen
+    widths = np.linspace(min(_LINE_WIDTH * len(scores), _WIDEST), _LINE_WIDTH, len(scores))
+    lines = []
+    for i, score in enumerate(scores):
+        t, error = _thinned(score.errors.t, np.maximum(score.errors.position, lowest_m))
+        name = shortened(Path(score.candidate.name).name, _LONGEST_NAME)
+        style = {**line_style(COLOURS[i % len(COLOURS)], i), "linewidth": widths[i]}
+        lines.append(ChartLine(name, (t * scale).tolist(), error.tolist(), style))
+    return lines
 
 
 def _smallest_m(scores: Sequence[Score]) -> float:

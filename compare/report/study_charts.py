@@ -105,12 +105,7 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     is measured.
     """
     best = front(rows, bound_m)
-    on_front = {row.key for row in best}
-
-    def is_shown(curve: Curve) -> bool:
-        return curve.usual or any(row.key in on_front for row in curve.rows)
-
-    shown = filter(is_shown, curves(rows))
+    shown = _usual_or_on_front(curves(rows), best)
     lines = ladders(shown, cost_of, partial(error_of, bound_m=bound_m))
     if not lines:
         return None
@@ -161,42 +156,65 @@ def _panels(lines: Sequence[Ladder], bound_m: float) -> list[_Panel]:
     return [_Panel(split, highest), _Panel(lowest / 30, split, height=1.2, labels=8)]
 
 
+def _usual_or_on_front(every: Sequence[Curve], best: Sequence[Row]) -> list[Curve]:
+    on_front = {row.key for row in best}
+    return [
+        curve for curve in every if curve.usual or any(row.key in on_front for row in curve.rows)
+    ]
+
+
 def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against CPU seconds, a panel per family, with all other methods in grey.
 
     Methods of many digits are left to `precision_ladder` if there are others. None if no row is
     measured.
     """
-    usual = [curve for curve in curves(rows) if curve.usual]
+    usual = filter(attrgetter("usual"), curves(rows))
     lines = ladders(usual, cost_of, partial(error_of, bound_m=bound_m))
     coarse = [line for line in lines if line.family != Family.MANY_DIGITS] or lines
     families = [family for family in Family if any(line.family == family for line in coarse)]
     if not families:
         return None
-    x_limits = limits([cpu_s for line in coarse for cpu_s in line.x])
-    y_limits = limits([error for line in coarse for error in line.y], 0.2, 6.0)
-    across = min(_COLUMNS, len(families))
+    x_limits = limits(_joined(line.x for line in coarse))
+    y_limits = limits(_joined(line.y for line in coarse), 0.2, 6.0)
     down = math.ceil(len(families) / _COLUMNS)
     with sheet((9.5, 2.9 * down)) as figure:
-        grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
-        for panel in grid.flat[len(families) :]:
-            panel.set_axis_off()
-        for i, (panel, family) in enumerate(zip(grid.flat, families, strict=False)):
+        panels = _family_panels(figure, down, len(families))
+        for i, panel in enumerate(panels):
             logarithmic(panel, "x", *x_limits, 6)
             logarithmic(panel, "y", *y_limits, 9)
             lowest_of_its_column = i + _COLUMNS >= len(families)
             panel.tick_params(labelbottom=lowest_of_its_column)
-            panel.set_title(family)
-            members = [line for line in lines if line.family == family]
-            for line in lines:
-                if line not in members:
-                    panel.plot(line.x, line.y, color=RULE, linewidth=1.0, zorder=1)
-            draw(panel, members)
-            legend(panel, members, size=7, inside=True)
+            _draw_family(panel, lines, families[i])
         figure.supxlabel(CPU, fontsize=9)
         figure.supylabel(ERROR, fontsize=9)
         description = f"Error against CPU seconds in small multiples: {', '.join(families)}."
         return svg_text(figure, "families", description)
+
+
+def _joined(coordinates: Iterable[Sequence[float]]) -> list[float]:
+    return [number for of_line in coordinates for number in of_line]
+
+
+def _family_panels(figure: Any, down: int, count: int) -> Sequence[Any]:
+    """Return a number of panels of a grid with so many rows; its other places stay empty."""
+    across = min(_COLUMNS, count)
+    grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+    for panel in grid.flat[count:]:
+        panel.set_axis_off()
+    panels: Sequence[Any] = grid.flat[:count]
+    return panels
+
+
+def _draw_family(panel: Any, lines: Sequence[Ladder], family: Family) -> None:
+    """Draw the methods of a family in colour, with their names, and all others in grey."""
+    panel.set_title(family)
+    members = [line for line in lines if line.family == family]
+    for line in lines:
+        if line not in members:
+            panel.plot(line.x, line.y, color=RULE, linewidth=1.0, zorder=1)
+    draw(panel, members)
+    legend(panel, members, size=7, inside=True)
 
 
 def _staircase(best: Sequence[Row], bound_m: float) -> ChartLine:
@@ -250,13 +268,7 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
     lines = ladders(shown, digits, cost_of, name)
     with sheet((9.5, 5.2)) as figure:
         axes = figure.subplots()
-        all_costs = [cpu_s for line in lines for cpu_s in line.y]
-        all_digits = [digits for line in lines for digits in line.x]
-        logarithmic(axes, "y", *limits(all_costs, 0.4, 3.0), 12)
-        low, high = limits(all_digits, 0.8, 1.4)
-        logarithmic(axes, "x", low, high)
-        ticks = [tick for tick in _TICKS if low < tick < high]
-        axes.set_xticks(ticks, list(map(str, ticks)))
+        _scale_digits_and_costs(axes, lines)
         _draw_limit_of_reference(axes, bound_m)
         draw(axes, lines)
         for law in laws.values():
@@ -267,6 +279,17 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
         legend(axes, lines, inside=True)
         description = "CPU seconds against digits achieved, log-log, with fitted power laws."
         return svg_text(figure, "precision", description)
+
+
+def _scale_digits_and_costs(axes: Any, lines: Sequence[Ladder]) -> None:
+    """Make both axes logarithmic, as long as the lines need them."""
+    all_costs = [cpu_s for line in lines for cpu_s in line.y]
+    all_digits = [digits for line in lines for digits in line.x]
+    logarithmic(axes, "y", *limits(all_costs, 0.4, 3.0), 12)
+    low, high = limits(all_digits, 0.8, 1.4)
+    logarithmic(axes, "x", low, high)
+    ticks = [tick for tick in _TICKS if low < tick < high]
+    axes.set_xticks(ticks, list(map(str, ticks)))
 
 
 def _draw_limit_of_reference(axes: Any, bound_m: float) -> None:

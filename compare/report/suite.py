@@ -250,20 +250,25 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
     root = ElementTree.Element("testsuites", counts)
     suite = ElementTree.SubElement(root, "testsuite", {"name": "foucault", **counts})
     for outcome in outcomes:
-        timing = None if outcome.score is None else outcome.score.timing
-        fields = {"classname": f"foucault.{outcome.scene}", "name": outcome.name}
-        if timing:
-            fields["time"] = f"{timing.wall_s:.3f}"
-        case = ElementTree.SubElement(suite, "testcase", fields)
-        lines = [plain_lines(line) for line in outcome.lines]
-        if outcome.exit_status == 0:
-            result = ElementTree.SubElement(case, "system-out")
-        else:
-            word = "failure" if outcome.exit_status == _DISAGREES else "error"
-            message_line = lines[0] if outcome.since is None else lines[1]
-            result = ElementTree.SubElement(case, word, {"message": message_line})
-        result.text = "\n".join(lines)
+        _add_test(suite, outcome)
     ElementTree.indent(root)
     xml = ElementTree.tostring(root, encoding="unicode")
     document = f'<?xml version="1.0" encoding="UTF-8"?>\n{xml}\n'
     write_file(path, document, "--junit")
+
+
+def _add_test(suite: ElementTree.Element, outcome: Outcome) -> None:
+    """Add the test of a candidate."""
+    timing = None if outcome.score is None else outcome.score.timing
+    fields = {"classname": f"foucault.{outcome.scene}", "name": outcome.name}
+    if timing:
+        fields["time"] = f"{timing.wall_s:.3f}"
+    case = ElementTree.SubElement(suite, "testcase", fields)
+    lines = [plain_lines(line) for line in outcome.lines]
+    if outcome.exit_status == 0:
+        result = ElementTree.SubElement(case, "system-out")
+    else:
+        word = "failure" if outcome.exit_status == _DISAGREES else "error"
+        message_line = lines[0] if outcome.since is None else lines[1]
+        result = ElementTree.SubElement(case, word, {"message": message_line})
+    result.text = "\n".join(lines)

@@ -67,6 +67,7 @@ def floor_of_what_ships(scene: Scene, until: float) -> float | None:
     if golden is None or rounded is None:
         return None
 
+    # many names, as each is a quantity of one formula
     rows = slice(0, int(np.searchsorted(golden.t, until)) + 1)
     truth = by_function(rounded, golden.t[rows])
     assert truth is not None

@@ -129,27 +129,37 @@ def score_passages(
         starts = _starts_by(golden, passages, distance, tolerance_m)
         raise _nothing_in_the_span(passages, scene, starts)
 
-    truth = golden.sections[section]
-    _, slopes = distance(_states(golden, section))
-    errors = transit_errors(
-        judged,
-        truth["t"],
-        slopes,
-        float(judged[-1]),
-        tolerance_m=tolerance_m,
-        away=lambda times: distance(truth_at(golden, times).states)[0],
-    )
-    bound_s = max(map(float, truth.bound("t")), default=0.0)
-    bound_m = float(bound_s * np.abs(slopes).max(initial=0.0))
-    score = PassageScore(
-        passages.name, scene, section, judged, errors, tolerance_m, bound_m, golden.level
-    )
+    judged_passages = replace(passages, times=judged)
+    score = _score_by(golden, judged_passages, scene, distance, tolerance_m)
     if score.verdict == "agrees":
         return score
 
     # by another clock, the last passage may be up to a swing later
     golden = golden_of(scene, DIGITS, progress, until=min(end_s, until_s + swing_s))
     return replace(score, starts=_starts_by(golden, passages, distance, score.allowed_m))
+
+
+def _score_by(
+    golden: Golden, judged: Passages, scene: Scene, distance: _Distance, tolerance_m: float
+) -> PassageScore:
+    """Return the score of passages within the span by the truth of their section."""
+    section = judged.section
+    assert section is not None
+    truth = golden.sections[section]
+    _, slopes = distance(_states(golden, section))
+    errors = transit_errors(
+        judged.times,
+        truth["t"],
+        slopes,
+        float(judged.times[-1]),
+        tolerance_m=tolerance_m,
+        away=lambda times: distance(truth_at(golden, times).states)[0],
+    )
+    bound_s = max(map(float, truth.bound("t")), default=0.0)
+    bound_m = float(bound_s * np.abs(slopes).max(initial=0.0))
+    return PassageScore(
+        judged.name, scene, section, judged.times, errors, tolerance_m, bound_m, golden.level
+    )
 
 
 def _nothing_in_the_span(passages: Passages, scene: Scene, starts: tuple[Ends, ...]) -> InputError:

@@ -149,12 +149,17 @@ def evaluated_transits(
     time_errors = function.bound["vx"] / np.abs(ax) + 2 * np.spacing(times)
     errors = [np.max(np.abs(rate) * time_errors, initial=0.0) for rate in derivatives]
 
-    x, y, z, _, vy, _ = states
-    numbers = [str(k) for k in range(1, len(times) + 1)]
+    # x, y, z and vy
+    columns = [_texts(column) for column in (*states[:3], states[4], ax, time_errors)]
+    sheet = Sheet(TRANSITS_HEADER, _rows([*_numbers_times_directions(zeros), *columns]), {})
+    return _EvaluatedTable(sheet, _bounds(function, states, errors))
+
+
+def _numbers_times_directions(zeros: _SignChanges) -> list[list[str]]:
+    """Return the first three columns of the transits as texts."""
+    numbers = [str(k) for k in range(1, len(zeros.times) + 1)]
     directions = [f"{sign:+d}" for sign in zeros.signs.tolist()]
-    columns = [_texts(column) for column in (x, y, z, vy, ax, time_errors)]
-    rows = _rows([numbers, _texts(times), directions, *columns])
-    return _EvaluatedTable(Sheet(TRANSITS_HEADER, rows, {}), _bounds(function, states, errors))
+    return [numbers, _texts(zeros.times), directions]
 
 
 def _bounds(

@@ -201,6 +201,7 @@ def _enclosure(proof: Proof) -> EnclosureRecord:
 
 def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:
     """Return h of the first row in m²/s², and its largest change over the rows, rounded up."""
+    # many names, as each is a quantity of one formula
     bits = bits_of(scene.run.digits) + INVARIANT_BITS
     k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
     states, unit = grid.scaled_integers(STATE)

@@ -256,6 +256,7 @@ class PlumbAxes:
     @classmethod
     def of(cls, rows: Rows) -> Self:
         """Turn rows into these axes."""
+        # many names, as each is a quantity of one formula
         of = DoubleDouble.from_pairs
         north = of(rows.pull[:, 1])
         up = of(rows.pull[:, 2])

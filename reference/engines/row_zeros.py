@@ -218,6 +218,7 @@ class Samples:
         The cubic through the values and slopes there says how low the minimum between them is, but
         for its error: that of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
+        # many names, as each is a quantity of one formula
         release = found.release
         zeros = found.zeros
         values, slopes = self.motion.form(found.form)
@@ -285,10 +286,8 @@ def describe_highest_points(
     is_high = found.zeros.directions < 0
     x, p, u = (part[is_high] for part in at.n)
     across = np.hypot(x, p)
-    end_x, end_p, end_u = (part[-1] for part in samples.motion.n)
-    end_angle = np.arctan2(np.hypot(end_x, end_p), -end_u)
-    angles = np.arctan2(across, -u)
-    outcomes.largest_angle[row] = np.max(angles, initial=max(release.angle, end_angle))
+    initial = max(release.angle, _angle_at_the_end(samples))
+    outcomes.largest_angle[row] = np.max(np.arctan2(across, -u), initial=initial)
 
     fall = -at.a[2][is_high]
     bend = np.min(fall / (release.rate * across) ** 2, initial=np.inf)
@@ -302,13 +301,24 @@ def describe_highest_points(
         return
 
     t = zeros.times[is_high]
-    x, p, _ = at.earlier(late)[is_high].n
-    azimuth = np.arctan2(p, x)
-    half_turns = np.round(np.diff(azimuth) / np.pi)
     outcomes.apsides[row] = len(t)
     outcomes.least_bend[row] = bend
     outcomes.least_fall[row] = fall.min()
     outcomes.apsis_first[row] = t[0]
     outcomes.apsis_last[row] = t[-1]
+    _describe_turn(outcomes, row, at.earlier(late)[is_high])
+
+
+def _angle_at_the_end(samples: Samples) -> float:
+    """Return the angle from the plumb line at the end of the span, in radians."""
+    x, p, u = (part[-1] for part in samples.motion.n)
+    return float(np.arctan2(np.hypot(x, p), -u))
+
+
+def _describe_turn(outcomes: Outcomes, row: int, highest: RowMotion) -> None:
+    """Fill in how far the swing plane turned, and how many highest points lie on the side of the one before."""
+    x, p, _ = highest.n
+    azimuth = np.arctan2(p, x)
+    half_turns = np.round(np.diff(azimuth) / np.pi)
     outcomes.turn[row] = azimuth[-1] - azimuth[0] - np.pi * np.sum(half_turns)
     outcomes.same_side[row] = np.count_nonzero(half_turns % 2 == 0)

@@ -6,10 +6,11 @@ The proof does not rely on it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
@@ -168,13 +169,21 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
 
     largest = 0
     for k, (t, bound, direction) in enumerate(enclosed, 1):
-        for time, error, sign in candidates:
-            gap = abs(t - time)
-            if sign == direction and gap <= bound + error:
-                largest = max(largest, gap)
-                break
-        else:
+        gap = _gap_of_the_next(candidates, t, bound, direction)
+        if gap is None:
             raise IntegrationError(
                 f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s."
             )
+        largest = max(largest, gap)
     return Fraction(largest, 2**bits)
+
+
+def _gap_of_the_next(
+    candidates: Iterator[tuple[Any, int, int]], t: Any, bound: int, direction: int
+) -> int | None:
+    """Return the distance of an enclosed zero from the next candidate that may be it; None if there is none."""
+    for time, error, sign in candidates:
+        gap = abs(t - time)
+        if sign == direction and gap <= bound + error:
+            return int(gap)
+    return None

@@ -151,6 +151,7 @@ class Sensitivity:
         """Return the response to a change of start, constants and length, shape (times, 6)."""
         from ..engines.heyoka.propagator import AutonomousSystem, Propagator
 
+        # many names, as each is a quantity of the motion or its derivative
         size = len(_MODEL.variables)
         base = np.array([float(number) for number in _numbers_of(self.scene.exact)])
         start, constants, length = base[:size], base[size:-1], base[-1]

@@ -139,7 +139,7 @@ def swing_or_reason(
     if last_low <= first_high:
         return UNDECIDED
     start = Start.of(inputs, bits + GUARD_BITS)
-    apses = [_apsis(position, start, lean) for _, *position in points]
+    apses = _apses(points, start, lean)
     offset_rad = offset(start, min(apsis.distance_m for apsis in apses))
     if offset_rad > 1:
         return LEAN
@@ -159,8 +159,18 @@ def swing_or_reason(
     # both ends may be off by the offset; the middle of the turn is half the sum
     if 2 * Fraction(offset_rad) * _DEGREES > abs(turn.low + turn.high):
         return Swing(hz, None, SMALL)
-    rates = [angle / span * HOUR for angle in turn for span in spans]
-    return Swing(hz, Ends(min(rates), max(rates)))
+    return Swing(hz, _rate(turn, spans))
+
+
+def _apses(points: Sequence[_Point], start: Start, lean: Fraction) -> list[_Apsis]:
+    """Return the highest points as seen along the plumb line."""
+    return [_apsis(position, start, lean) for _, *position in points]
+
+
+def _rate(turn: Ends, spans_s: tuple[Fraction, Fraction]) -> Ends:
+    """Return the rate of a turn within the shortest and the longest time, per hour."""
+    rates = [angle / span_s * HOUR for angle in turn for span_s in spans_s]
+    return Ends(min(rates), max(rates))
 
 
 def _longest_gap(points: Sequence[_Point]) -> Fraction:
@@ -217,6 +227,7 @@ def turns_too_far(start: Start, seconds: Any) -> bool:
 
 def _apsis(position: _Point, start: Start, lean: Fraction) -> _Apsis:
     """Return a highest point as seen along the plumb line, from the intervals of x, y and z."""
+    # many names, as each is a quantity of one formula
     ctx = start.ctx
     x, y, z = (to_mpf((low + high) / 2, ctx) for low, high in position)
     dx, dy, dz = (to_mpf((high - low) / 2, ctx) for low, high in position)

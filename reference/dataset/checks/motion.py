@@ -271,21 +271,32 @@ def _outside_intervals(
     middles = _middles(plan, intervals)
     outside = set(range(len(times)))
     refuted = []
-    rows = zip(intervals, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True)
-    for interval, vx, ax in rows:
+    for interval, vx, ax in zip(
+        intervals, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True
+    ):
         low, high = Fraction(interval.from_s), Fraction(interval.to_s)
         inside = range(bisect_left(times, low), bisect_right(times, high))
         outside.difference_update(inside)
-        slopes_inside = [slopes[k] for k in inside]
-        is_decided = grazing.crosses(slopes_inside) or _has_other_parity(interval, len(inside))
-        if _ends_the_run(files, low, high, slopes_inside):
-            is_decided = False
-        if is_decided or grazing.is_far(vx, ax, (high - low) / 2):
-            place = f"possible: from {interval.from_s} to {interval.to_s} s"
-            refuted.append(
-                f"{MANIFEST}: {place} the motion has {len(inside)} transits, and that is decided"
-            )
+        slopes_inside = slopes[inside.start : inside.stop]
+        is_far = grazing.is_far(vx, ax, (high - low) / 2)
+        if is_far or _is_decided(files, interval, slopes_inside, grazing):
+            refuted.append(_refuted_text(interval, len(inside)))
     return sorted(outside), refuted
+
+
+def _refuted_text(interval: Possible, count: int) -> str:
+    place = f"possible: from {interval.from_s} to {interval.to_s} s"
+    return f"{MANIFEST}: {place} the motion has {count} transits, and that is decided"
+
+
+def _is_decided(
+    files: DatasetFiles, interval: Possible, slopes: list[Fraction], grazing: _Grazing
+) -> bool:
+    """Return whether the slopes of xdot at its zeros in an interval decide how many there are."""
+    low, high = Fraction(interval.from_s), Fraction(interval.to_s)
+    if _ends_the_run(files, low, high, slopes):
+        return False
+    return grazing.crosses(slopes) or _has_other_parity(interval, len(slopes))
 
 
 @dataclass(frozen=True)
@@ -374,6 +385,9 @@ def _off(
             gap = abs(number - values[i] * scale)
             if gap > limits[bound]:
                 place = f"{kind}.csv: {_ROW_WORD[kind]} {row[0]}"
-                off = f"{name} is off by {gap / unit:.2g}, its bound is {float(bound):.2g}"
-                sentences.append(f"{place}: {off}")
+                sentences.append(f"{place}: {_error_text(name, gap / unit, bound)}")
     return sentences
+
+
+def _error_text(name: str, error: float, bound: Fraction) -> str:
+    return f"{name} is off by {error:.2g}, its bound is {float(bound):.2g}"

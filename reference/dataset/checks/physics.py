@@ -189,6 +189,7 @@ class _Moments:
         Raises:
             OverflowError: no double is as large.
         """
+        # many names, as each is a quantity of one formula
         k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
         columns = [(column / self.unit).astype(np.float64) for column in self.columns]
         bounds = [Fraction(bound, self.unit) for bound in self.bounds]

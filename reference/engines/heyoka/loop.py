@@ -210,9 +210,7 @@ def solve(rows: Rows, options: RunOptions, tolerance: float) -> Outcomes:
     transits: list[RowZeros] = []
     with np.errstate(all="ignore"):
         for i in range(len(rows)):
-            n, V, (turn_p, turn_u, pull) = np.split(numbers[:, i], 3)
-            k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[i])
-            state = [*n, *np.cross(n, V)]
+            k, state = _constants_and_state(numbers[:, i], drags[i])
             release = RowRelease.of(rows, axes, i, RowMotion.of(state, k), forms[i])
             compilation = _Compilation.of(options, bool(k.drag), tolerance)
             transits.append(_solve(outcomes, _Row(i, release, k, state, compilation)))
@@ -222,6 +220,13 @@ def solve(rows: Rows, options: RunOptions, tolerance: float) -> Outcomes:
     times = [zeros.times for zeros in transits]
     directions = [zeros.directions for zeros in transits]
     return outcomes.with_transits(times, directions)
+
+
+def _constants_and_state(numbers: Array, drag: float) -> tuple[Constants, list[Any]]:
+    """Return a row's constants, and n and n × V at the release, from n, V, turn and pull."""
+    n, V, (turn_p, turn_u, pull) = np.split(numbers, 3)
+    k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drag)
+    return k, [*n, *np.cross(n, V)]
 
 
 def _turn_to_earth(outcomes: Outcomes, axes: PlumbAxes, length: Array) -> None:

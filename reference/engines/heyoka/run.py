@@ -194,13 +194,17 @@ def run_between(
     reached = []
     for i, span in zip(starts, spans, strict=True):
         si = [to_mpf(Fraction(value, 1 << rows.bits), start.ctx) for value in states[i]]
-        x, y, z, vx, vy, vz = si
-        release = replace(start, position=(x, y, z), velocity=(vx, vy, vz))
-        stepper.back((zero, stepper.model.release(release)))
+        stepper.back((zero, stepper.model.release(_released_at(start, si))))
         reached.append(stepper.propagate([zero, stepper.numbers.of(span)])[-1])
         if report is not None:
             report(float(plan.times[i + 1]))
     return result(plan, stepper, np.array(reached, dtype=stepper.numbers.dtype), None, started)
+
+
+def _released_at(start: Start, si: Sequence[Any]) -> Start:
+    """Return a start from another state of the scene, in SI units."""
+    x, y, z, vx, vy, vz = si
+    return replace(start, position=(x, y, z), velocity=(vx, vy, vz))
 
 
 def result(

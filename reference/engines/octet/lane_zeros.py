@@ -109,6 +109,7 @@ class _Halves(NamedTuple):
 @compiled
 def seek(z: LaneZeros, f: Array, length: Array, time: Array, order: int) -> None:
     """Find which lanes have one zero of the polynomial f on the step, and about where; at time 0 all are in doubt."""
+    # many names, as each is a quantity of one formula in each lane
     h = get_row(length, 0)
     zero = spread(0.0)
     halves = _halves(f, h, order)
@@ -266,6 +267,7 @@ def _value_and_slope(f: Array, place: Any, order: int) -> tuple[Any, Any]:
 @compiled
 def seek_highest(z: LaneZeros, g: Array, length: Array, order: int) -> None:
     """Find which lanes have a highest point on the step; `doubt` is where a sign is lost in rounding."""
+    # many names, as each is a quantity of one formula in each lane
     h = get_row(length, 0)
     zero = spread(0.0)
     one = spread(1.0)

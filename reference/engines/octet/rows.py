@@ -142,6 +142,7 @@ def outcomes(
 
 def _si_state(rows: Rows, numbers: Array, results: Array) -> Array:
     """Return x, y, z in m and vx, vy, vz in m/s at the end, shape (rows, 6)."""
+    # many names, as each is a quantity of one formula
     length = rows.length[:, 0]
     unit = numbers[:, UNIT]
     turn_p = numbers[:, TURN_P]
