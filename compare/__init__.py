@@ -11,8 +11,8 @@ A trajectory from a file, an array or a program is a `Candidate`, and its judgem
 >>> compare.judge(candidate, "paris")                                 # doctest: +SKIP
 Score(disagrees with paris: 0.0012 m)
 
-`METHODS` and `APPROXIMATIONS` hold the integrators and the analytic approximations that are compared, by id; `study`
-measures their error against run time.
+`METHODS` and `APPROXIMATIONS` hold the integrators and the analytic approximations that are
+compared, by id; `study` measures their error against run time.
 
 >>> "rk4" in compare.METHODS
 True

@@ -49,22 +49,26 @@ def assert_agrees(
     Args:
         scene: a scene, its id, the path of a TOML file, or nested mappings.
         t: times in s, shape (rows,), increasing.
-        states: x, y in m; or x, y, z in m; or these and vx, vy, vz in m/s: shape (rows, 2), (rows, 3) or (rows, 6).
-        tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in `foucault score`.
+        states: x, y in m; or x, y, z in m; or these and vx, vy, vz in m/s: shape (rows, 2), (rows,
+            3) or (rows, 6).
+        tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in
+            `foucault score`.
         transits: times of xdot = 0 in s, if they are to be compared as well.
-        covers: share of the scene's span, from 0 to 1, that the times have to reach; 1 is all of it.
+        covers: share of the scene's span, from 0 to 1, that the times have to reach; 1 is all of
+            it.
         as_model: whether agreement as a named simplification of the model is enough.
         inputs: decimal, binary64 or auto, as in `foucault score --inputs`.
-        baseline: an earlier version: the path of its file or of its `foucault score --json` (.json), or its score. Then
-            it is enough to be no worse than that by more than the tolerance.
+        baseline: an earlier version: the path of its file or of its `foucault score --json`
+            (.json), or its score. Then it is enough to be no worse than that by more than the
+            tolerance.
 
     Returns:
         The score, with more measures of the error.
 
     Raises:
-        AssertionError: the trajectory disagrees, or has no row after t = 0, or became worse than its baseline; the
-            message gives time, component, expected, got, difference, what is allowed, what changed, and the causes
-            that were found.
+        AssertionError: the trajectory disagrees, or has no row after t = 0, or became worse than
+            its baseline; the message gives time, component, expected, got, difference, what is
+            allowed, what changed, and the causes that were found.
         InputError: an array has the wrong shape, or a number is not finite.
     """
     scene = as_scene(scene)

@@ -35,7 +35,8 @@ from reference.scenes.shipped import WITHOUT_FUNCTION, data_root
 from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-# of the cord length: how near the truth is evaluated for candidates with more digits than a double's
+# of the cord length: how near the truth is evaluated for candidates with more digits than a
+# double's
 FINE = 2.0**-110
 
 # changes with the results of `reference.dataset.golden.dense`, so that older entries are made again
@@ -73,14 +74,15 @@ def golden_of(
     """Return a dataset that solves a scene: one that ships, or one that is solved now and kept in the cache.
 
     Args:
-        scene: the problem, with its reading of the inputs, its span, and whether transits are needed.
+        scene: the problem, with its reading of the inputs, its span, and whether transits are
+            needed.
         digits: decimal digits needed at least.
         progress: what is called when the scene has to be solved.
         until: end of the span that is needed, in s: a new dataset stops at the first grid time from
             there on.
         level: level of trust of a new dataset.
-        grid: whether the dataset's grid up to the scene's end must be the scene's; otherwise any grid
-            will do.
+        grid: whether the dataset's grid up to the scene's end must be the scene's; otherwise any
+            grid will do.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
@@ -139,8 +141,8 @@ def with_function(scene: Scene) -> Golden | None:
 def by_function(golden: Golden, times: Array) -> Dense | None:
     """Return the truth at a candidate's times by the golden function of a dataset; None if they go on beyond its end.
 
-    Its rows, where it has them at these times, are known more closely, and are taken. A last time that a program has
-    added up may be a little later: the state there follows from its rates.
+    Its rows, where it has them at these times, are known more closely, and are taken. A last time
+    that a program has added up may be a little later: the state there follows from its rates.
     """
     if not golden.manifest.alone and set(times.tolist()) <= set(golden.times):
         return dense(golden, times)

@@ -53,7 +53,8 @@ class Motion(Approximation):
 
     Attributes:
         path: `path(case, times)`, the motion without checks of scene and times; see `trajectory`.
-        rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's rest position.
+        rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's
+            rest position.
     """
 
     path: Callable[[PaperCase, Array], Array]
@@ -70,7 +71,8 @@ class Motion(Approximation):
             x, y, z in m and vx, vy, vz in m/s, shape (times, 6); z is always on the sphere.
 
         Raises:
-            InputError: the scene is outside the domain, or the times are negative or do not increase.
+            InputError: the scene is outside the domain, or the times are negative or do not
+                increase.
             UnreachableError: the motion leaves the sphere or is not finite.
         """
         self.check(scene)

@@ -1,7 +1,7 @@
 """A scene's numbers for closed forms in high precision, plumb-line axes, rows in binary64, and reasons to refuse.
 
-Truncated systems are integrated with the constants as parameters. A sweep over latitudes then compiles one system
-instead of one for each latitude, and compiling costs more than the integration.
+Truncated systems are integrated with the constants as parameters. A sweep over latitudes then
+compiles one system instead of one for each latitude, and compiling costs more than the integration.
 """
 
 from __future__ import annotations
@@ -128,8 +128,8 @@ def integrated(
 
     Args:
         variables: names of the state variables.
-        derivatives: `derivatives(state, constants, functions)`; it may use the constants turn, pull, centrifugal and
-            drag.
+        derivatives: `derivatives(state, constants, functions)`; it may use the constants turn,
+            pull, centrifugal and drag.
         start: the state at t = 0, mpf.
         case: its constants are used; those that are exactly zero are left out of the system.
         times: increasing, from 0, in s.

@@ -1,8 +1,9 @@
 """Numbers of a motion: apparent gravity, frequency in Hz, precession period T_f in s; rest position in rad.
 
-Gravity is that of Gastebois 4.2 and Mathar (48), the frequencies are those of Mathar VII, and the precession is that
-of Gastebois 4.1, 4.2, 6.3, where T_p is 2π/Ω. The rest position is that of Mathar V: an angle from the
-vertical, positive to the south, so that y = -l sin of it in either hemisphere. `foucault paper` lists the misprints.
+Gravity is that of Gastebois 4.2 and Mathar (48), the frequencies are those of Mathar VII, and the
+precession is that of Gastebois 4.1, 4.2, 6.3, where T_p is 2π/Ω. The rest position is that of
+Mathar V: an angle from the vertical, positive to the south, so that y = -l sin of it in either
+hemisphere. `foucault paper` lists the misprints.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Gastebois' pendulum about the tilted plumb line: any amplitude, 7.2, and small angles, 5, solved in 6.1 to 6.3.
 
-7.2: his angles θ (from the plumb line) and φ (from east to north) are singular on the plumb line. Along the scene's
-axes his system is the model without the centrifugal gradient: the apparent gravity is everywhere that at the
-suspension, `pull`.
+7.2: his angles θ (from the plumb line) and φ (from east to north) are singular on the plumb line.
+Along the scene's axes his system is the model without the centrifugal gradient: the apparent
+gravity is everywhere that at the suspension, `pull`.
 
 5: Z = x + i y, Z'' = -ω0² Z - 2 i Ω_z Z' has the solution Z = C1 exp(-i (ω + Ω_z) t) + C2 exp(i (ω - Ω_z) t) of 6.1,
 with ω² = ω0² + Ω_z²; `mathar` uses it too.

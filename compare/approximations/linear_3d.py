@@ -1,10 +1,11 @@
 """The full system linearised about its rest position and solved exactly: the best that a small-angle model can do.
 
-Let δ be the displacement at right angles to the plumb line (east, north), Ω_n the component of Ω along the plumb line,
-T the tension of the cord at the rest position and C the centrifugal gradient, all over l. Then
+Let δ be the displacement at right angles to the plumb line (east, north), Ω_n the component of Ω
+along the plumb line, T the tension of the cord at the rest position and C the centrifugal gradient,
+all over l. Then
     δ1'' = -a δ1 + 2 Ω_n δ2',   δ2'' = -b δ2 - 2 Ω_n δ1',   a = T - C11, b = T - C22.
-In p = (√a δ1, √b δ2, δ1', δ2') this is p' = S p with S skew: i S is hermitian, so its eigenvectors are orthonormal
-and the solution stays accurate where two frequencies coincide.
+In p = (√a δ1, √b δ2, δ1', δ2') this is p' = S p with S skew: i S is hermitian, so its eigenvectors
+are orthonormal and the solution stays accurate where two frequencies coincide.
 """
 
 from __future__ import annotations

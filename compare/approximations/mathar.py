@@ -1,14 +1,14 @@
 """Mathar's way from (43) to the harmonic pendulum on a turntable: without one kind of term at a time, then (51)-(52).
 
-Section VI: (43) without an item, integrated numerically. Items 1 and 4 and the variant only change constants of the
-model; items 2, 3 and 5 change (43) itself. Lengths are over the cord length, `depth` is |z|, and g and the terms in R
-are folded into k.pull as everywhere in the project. All five items together do not yet give (51)-(52): the diagonal of
-(43) keeps y² + l² and x² + l². To drop these squares too is one more step, of the same order, which the paper takes
-without saying so.
+Section VI: (43) without an item, integrated numerically. Items 1 and 4 and the variant only change
+constants of the model; items 2, 3 and 5 change (43) itself. Lengths are over the cord length,
+`depth` is |z|, and g and the terms in R are folded into k.pull as everywhere in the project. All
+five items together do not yet give (51)-(52): the diagonal of (43) keeps y² + l² and x² + l². To
+drop these squares too is one more step, of the same order, which the paper takes without saying so.
 
-(51)-(52), and section VII's improvements (g', centre, slow-down), are Gastebois' closed solution 6.1 with other
-constants: gravity g or g', the centre of the swing, and the frequency. In print (51)-(52) lost hats and dots;
-dimensions and the limit of (43) leave no doubt about the right form.
+(51)-(52), and section VII's improvements (g', centre, slow-down), are Gastebois' closed solution
+6.1 with other constants: gravity g or g', the centre of the swing, and the frequency. In print
+(51)-(52) lost hats and dots; dimensions and the limit of (43) leave no doubt about the right form.
 """
 
 from __future__ import annotations
@@ -36,9 +36,10 @@ def derivatives(
 ) -> State:
     """Return the derivatives of x, y, vx, vy by (43) without the terms of items 2, 3 and 5.
 
-    With no item this is `reference.model.formulations.Plane.derivatives`, where powers of z are cancelled. It is
-    written again on purpose, with every term multiplied by z⁴ as in the paper: the items leave out these terms one by
-    one, and item 5 changes the powers of z themselves. In tests/compare/approximations/test_closed_forms.py
+    With no item this is `reference.model.formulations.Plane.derivatives`, where powers of z are
+    cancelled. It is written again on purpose, with every term multiplied by z⁴ as in the paper: the
+    items leave out these terms one by one, and item 5 changes the powers of z themselves. In
+    tests/compare/approximations/test_closed_forms.py
     `test_with_nothing_left_out_the_truncated_equations_are_the_model` keeps the two equal.
 
     Args:

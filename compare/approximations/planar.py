@@ -18,8 +18,9 @@ _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 roundin
 def sn_cn(u: Array, modulus: Any, ctx: Any) -> tuple[Array, Array]:
     """Return k sn(u) and k cn(u), k the modulus, by their Fourier series in the nome (DLMF 22.11.1, 22.11.2).
 
-    With q the nome and v = π u/(2 K(k)), k sn = (2π/K) Σ q^(n+1/2)/(1 - q^(2n+1)) sin((2n+1) v); for k cn the sine is
-    a cosine and the denominator has a plus sign. A swing of 170° needs fourteen terms.
+    With q the nome and v = π u/(2 K(k)), k sn = (2π/K) Σ q^(n+1/2)/(1 - q^(2n+1)) sin((2n+1) v);
+    for k cn the sine is a cosine and the denominator has a plus sign. A swing of 170° needs
+    fourteen terms.
     """
     quarter = ctx.ellipk(modulus**2)
     nome = ctx.qfrom(k=modulus)

@@ -1,6 +1,7 @@
 """Harmonic pendulum of the third source paper, ẍ + (g/L) x = 2 ω sin α ẏ and its counterpart in y, solved three ways.
 
-All three give one motion, that of `linear_g`. Each is computed by its own method, so that they check each other.
+All three give one motion, that of `linear_g`. Each is computed by its own method, so that they
+check each other.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ def _rates(case: PaperCase) -> tuple[float, float]:
 def _rotating_frame(case: PaperCase, times: Array) -> Array:
     """Method 1: x' = x cos ω_p t - y sin ω_p t, y' = x sin ω_p t + y cos ω_p t; x, y oscillate, ω_p = -ω sin α.
 
-    The primed coordinates are those of the ground: the paper substitutes into their equations of motion.
+    The primed coordinates are those of the ground: the paper substitutes into their equations of
+    motion.
     """
     w, turn = _rates(case)
     (x0, y0, _), (vx0, vy0, _) = (tuple(map(float, v)) for v in (case.position, case.velocity))

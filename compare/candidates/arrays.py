@@ -60,7 +60,8 @@ def candidate_from(columns: Any) -> Candidate:
     """Make a candidate of columns by name, as in a header: a mapping of arrays, or a pandas.DataFrame.
 
     Raises:
-        InputError: it has no names, a column is missing or its unit not known, or as in `Candidate.of`.
+        InputError: it has no names, a column is missing or its unit not known, or as in
+            `Candidate.of`.
     """
     if not (hasattr(columns, "__getitem__") and hasattr(columns, "keys")):
         got = type(columns).__name__
@@ -88,7 +89,8 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
     """Read a candidate from the bytes of an .npz archive.
 
     Raises:
-        InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
+        InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real
+            numbers.
     """
     # arrays whose names mean something, or the only one if it has no name
     try:

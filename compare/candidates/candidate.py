@@ -28,8 +28,10 @@ class Deviation:
 
     Attributes:
         id: a stable word.
-        text: of a reading, its sentence; else the end of the sentence "Your file …" or "Your program …".
-        size_m: the distance in m by which it moves the bob, on top of what stands before it; 0 if none is known.
+        text: of a reading, its sentence; else the end of the sentence "Your file …" or "Your
+            program …".
+        size_m: the distance in m by which it moves the bob, on top of what stands before it; 0 if
+            none is known.
         stage: of a program's: gravity, model, input, release, frame, clock or integrator.
         value: a fitted number, in its unit.
         shift: by how much it differs from the scene's.
@@ -53,12 +55,13 @@ class Candidate:
         name: the file or program that it came from.
         t: times in s, shape (rows,), strictly increasing, from 0 on.
         columns: x, y and any of z, vx, vy, vz in m and m/s, each of shape (rows,).
-        low: low parts of t and `columns`, for numbers with more digits than a double: the number is double + low part.
+        low: low parts of t and `columns`, for numbers with more digits than a double: the number is
+            double + low part.
         transits: times of xdot = 0 in s that came with it, or None.
         notes: remarks that a reader ought to know.
         conventions: what reading found out about names, units and scales.
-        clock_s: what its clock showed in the first row, in s, where t is counted from that row; None if t is counted
-            from the release.
+        clock_s: what its clock showed in the first row, in s, where t is counted from that row;
+            None if t is counted from the release.
     """
 
     name: str
@@ -101,7 +104,8 @@ class Candidate:
         """Check the arrays and make a candidate of them, without rows of NaN after which others follow: lost frames.
 
         Raises:
-            InputError: a column is missing, lengths differ, a number is not finite, or times do not increase.
+            InputError: a column is missing, lengths differ, a number is not finite, or times do not
+                increase.
         """
         _check_columns(name, t, columns)
         lost = _lost_frames(columns)
@@ -129,7 +133,8 @@ class Passages:
     Attributes:
         name: the file that they came from.
         times: in s, in order.
-        section: the word of the section that was passed, such as "gate 30"; None for transits, xdot = 0.
+        section: the word of the section that was passed, such as "gate 30"; None for transits, xdot
+            = 0.
     """
 
     name: str
@@ -185,8 +190,8 @@ def checked_transits(times: Array, name: str) -> Array:
     """Check transit times and return them as doubles.
 
     Raises:
-        InputError: they are not one-dimensional, not finite, negative, or decrease; a time that stands there twice
-            is an extra transit.
+        InputError: they are not one-dimensional, not finite, negative, or decrease; a time that
+            stands there twice is an extra transit.
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1:

@@ -1,9 +1,10 @@
 """Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall).
 
-The limit on its output is that on any candidate's text (`text.MAX_BYTES`). Its descendants normally stay in its
-process group. One that forks into a session of its own leaves the group, and its parent may have exited: it is
-recognised by a mark in the environment that it inherited. This process may itself be killed (SIGKILL) and can then do
-nothing more: a shell that reads from it by a pipe sees the end of the pipe, and kills them in its place.
+The limit on its output is that on any candidate's text (`text.MAX_BYTES`). Its descendants normally
+stay in its process group. One that forks into a session of its own leaves the group, and its parent
+may have exited: it is recognised by a mark in the environment that it inherited. This process may
+itself be killed (SIGKILL) and can then do nothing more: a shell that reads from it by a pipe sees
+the end of the pipe, and kills them in its place.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ _LONG_S = 20.0
 MARK = "FOUCAULT_RUN"
 # searches for descendants at most: a process may be started while the others are killed
 _ROUNDS = 100
-# $1 is the mark; a line on stdin is the process group, and its end that of the process which wrote it
+# $1 is the mark; a line on stdin is the process group, and its end that of the process which wrote
+# it
 _GUARD = """
 read -r group
 read -r end
@@ -140,7 +142,8 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
     """Run a program once and return its stdout (an open file, at its start), CPU seconds and wall seconds.
 
     Raises:
-        InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
+        InputError: it cannot be started, fails, takes too long or writes too much; no process of it
+            is left running.
     """
     start = time.monotonic()
     mark = secrets.token_hex(16)

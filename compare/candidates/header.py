@@ -84,8 +84,8 @@ class Header:
         """Return which column stands where, and how many columns there are, from the first row and its line.
 
         Raises:
-            InputError: no line names the columns, or one does but not all that are needed, and the first row does not
-                tell either.
+            InputError: no line names the columns, or one does but not all that are needed, and the
+                first row does not tell either.
         """
         fields = split(row, separator)
         least = len(without_end(fields))

@@ -1,8 +1,9 @@
 """Which column stands where: the words of a header, or of `--columns`, as programs use them; units in SI.
 
-`pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t; `vx`, `xdot`, `dx/dt`
-and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other sign. A name may have a direction and a unit
-behind it, in any order: `x_east_m`, `x_m_east`, `pos_x_m`.
+`pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t;
+`vx`, `xdot`, `dx/dt` and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other
+sign. A name may have a direction and a unit behind it, in any order: `x_east_m`, `x_m_east`,
+`pos_x_m`.
 """
 
 from __future__ import annotations
@@ -76,7 +77,8 @@ class Meaning:
 
     Attributes:
         column: t, x, y, z, vx, vy or vz.
-        factor: by which its numbers come to SI units and to the column's direction; None if the unit is not known.
+        factor: by which its numbers come to SI units and to the column's direction; None if the
+            unit is not known.
         unit: as printed; empty if there is none.
         rank: 0 for the column's own name, 1 for it in capitals, 2 for another word.
     """
@@ -235,7 +237,8 @@ class Naming:
     """Hold the names and units that a user gives to the columns of a file.
 
     Attributes:
-        columns: their names in order, as in a header, `-` for one that is not read; empty if the file says it.
+        columns: their names in order, as in a header, `-` for one that is not read; empty if the
+            file says it.
         units: of times and lengths where the names give none, such as ms or cm.
     """
 
@@ -253,7 +256,8 @@ class Layout:
 
     Attributes:
         places: index of each column that is read, in the order t, x, y, z, vx, vy, vz.
-        factors: by which a column's numbers come to SI units, east, north and up; only where it is not 1.
+        factors: by which a column's numbers come to SI units, east, north and up; only where it is
+            not 1.
         conventions: what is not plain about it.
     """
 
@@ -289,7 +293,8 @@ def layout(
         needed: columns that must be among them: `NEEDED`, beside which others are read, or t alone.
         naming: what the user says of the columns, of which the units count here.
         where: the header's name in messages.
-        units: those of a line below or above the header, one for each column, empty for a column without a unit.
+        units: those of a line below or above the header, one for each column, empty for a column
+            without a unit.
 
     Raises:
         InputError: a column is missing or there twice, or its unit is not known.
@@ -414,7 +419,8 @@ def given(count: int, naming: Naming) -> Layout:
     """Return the layout of a file whose columns the user names.
 
     Raises:
-        InputError: there are more or fewer names, one is not known, or one that is needed is missing.
+        InputError: there are more or fewer names, one is not known, or one that is needed is
+            missing.
     """
     names = naming.columns
     option = "--columns"

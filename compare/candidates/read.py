@@ -1,15 +1,17 @@
 """Read a candidate or its transit times from a file or a stream; the first bytes tell text from NumPy's files.
 
-- A line of text names the columns in any order: t, x, y and any of z, vx, vy, vz, in these words or others
-  (`names.py`); a line of units may be below it. Without such a line three columns are t, x, y, four are t, x, y, z.
-- Fields are separated by commas, semicolons, tabs, bars or white space, and may be in quotes. Decimals have a point or
-  a comma. A line that begins with #, %, ! or // is a comment, and the header may be one. Columns of other names are not
-  read. Times are numbers, or hours:minutes:seconds with a date or without. Rows without a number are left out.
-- foucPend (Mathar, appendix B): no header; t x y z X Y Z φ λ speed separated by white space, of which the first
-  four are read; `# P n t f` names a transit.
+- A line of text names the columns in any order: t, x, y and any of z, vx, vy, vz, in these words or
+  others (`names.py`); a line of units may be below it. Without such a line three columns are t, x,
+  y, four are t, x, y, z.
+- Fields are separated by commas, semicolons, tabs, bars or white space, and may be in quotes.
+  Decimals have a point or a comma. A line that begins with #, %, ! or // is a comment, and the
+  header may be one. Columns of other names are not read. Times are numbers, or
+  hours:minutes:seconds with a date or without. Rows without a number are left out.
+- foucPend (Mathar, appendix B): no header; t x y z X Y Z φ λ speed separated by white space, of
+  which the first four are read; `# P n t f` names a transit.
 
-A text that can be read in two ways is refused, with what to write instead. The number of bytes and rows and the length
-of a line are limited. Errors name the line.
+A text that can be read in two ways is refused, with what to write instead. The number of bytes and
+rows and the length of a line are limited. Errors name the line.
 """
 
 from __future__ import annotations
@@ -83,8 +85,10 @@ def read(
 
     Args:
         source: the file's path.
-        columns: names of its columns in order, `-` for one that is not read; none if a header names them.
-        units: of its times and lengths where no header names them, such as ms and cm; SI units if none.
+        columns: names of its columns in order, `-` for one that is not read; none if a header names
+            them.
+        units: of its times and lengths where no header names them, such as ms and cm; SI units if
+            none.
 
     Raises:
         InputError: the candidate cannot be read; the message names the line.
@@ -205,7 +209,8 @@ def _read_text(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
 
 _UNPACK = "Unpack it first."
 _RECODE = "Write it in UTF-8; PowerShell does by `| Out-File -Encoding utf8`."
-# how files begin that are no text in UTF-8, what they are, and what to do; the mark of UTF-32 begins as that of UTF-16
+# how files begin that are no text in UTF-8, what they are, and what to do; the mark of UTF-32
+# begins as that of UTF-16
 _BINARY_MARKS = (
     (b"\x1f\x8b", "gzip", _UNPACK),
     (b"\xfd7zXZ", "xz", _UNPACK),
@@ -266,7 +271,8 @@ class _ColumnReader:
 
     Args:
         name: its name in messages.
-        needed: columns that must be there: `NEEDED`, or t alone for transits, of which some may be equal.
+        needed: columns that must be there: `NEEDED`, or t alone for transits, of which some may be
+            equal.
         naming: what the user says of the columns.
     """
 
@@ -552,7 +558,8 @@ class _ColumnReader:
         """Return in s what a clock shows: since the first row if it does not begin at 0, but of transits as it stands.
 
         Raises:
-            InputError: a text is not a time of day, or its column has a unit that no time of day has.
+            InputError: a text is not a time of day, or its column has a unit that no time of day
+                has.
         """
         if "t" in reading.layout.factors:
             expected = "a number, as its unit says"
@@ -619,8 +626,8 @@ def _low_parts(
 def _low_part(text: str, near: float, of_time: bool = False) -> float:
     """Return the printed number minus `near`, its nearest double; 0 if it may be just that double, printed.
 
-    A time beside numbers more precise than doubles is the decimal itself where it has few digits, as
-    0.1 has.
+    A time beside numbers more precise than doubles is the decimal itself where it has few digits,
+    as 0.1 has.
     """
     # a number that underflows to 0 is below every scale here
     if near == 0 or not math.isfinite(near):

@@ -1,7 +1,8 @@
 """The dialect of a text: what separates its fields, which mark its decimals have, how its times are written.
 
-A text is taken apart in one way from its first row to its last. `split` gives the fields of a line, `plain` the
-number in a field. `reading.js` has the same rules for the pages that read files in the browser.
+A text is taken apart in one way from its first row to its last. `split` gives the fields of a line,
+`plain` the number in a field. `reading.js` has the same rules for the pages that read files in the
+browser.
 """
 
 from __future__ import annotations
@@ -91,7 +92,8 @@ def split(line: str, separator: str) -> list[str]:
 def possible_separators(line: str) -> list[tuple[str, float]]:
     """Return the separators under which most fields of a line are numbers, each with their share, the likeliest first.
 
-    Fields that say that there is no number do not count. Of equal shares the first of `SEPARATORS` is the likelier.
+    Fields that say that there is no number do not count. Of equal shares the first of `SEPARATORS`
+    is the likelier.
     """
     found = []
     for separator in SEPARATORS:
@@ -126,12 +128,14 @@ def without_end(fields: list[str]) -> list[str]:
 def doubtful_number(columns: Sequence[Sequence[str]], commas_separate: bool) -> str | None:
     """Return a number whose mark may be decimal or may separate thousands; None if the numbers decide it.
 
-    A mark is decimal as soon as one number has it where thousands are not separated: in 0,5 or 12.25, not in 1,250.
-    Where no number shows it, a point is decimal nevertheless, unless commas are, or whole numbers stand in its column.
+    A mark is decimal as soon as one number has it where thousands are not separated: in 0,5 or
+    12.25, not in 1,250. Where no number shows it, a point is decimal nevertheless, unless commas
+    are, or whole numbers stand in its column.
 
     Args:
         columns: numbers as they are written.
-        commas_separate: whether commas stand between the columns: then nobody writes points between thousands.
+        commas_separate: whether commas stand between the columns: then nobody writes points between
+            thousands.
     """
     examples: dict[str, str] = {}
     proven: set[str] = set()

@@ -45,8 +45,8 @@ class Judging:
     Attributes:
         naming: what the user says of the columns of files.
         options: what counts as agreement.
-        baseline: a file, a document (.json), a command for that of --run, or a folder for a suite; None
-            if there is no earlier version.
+        baseline: a file, a document (.json), a command for that of --run, or a folder for a suite;
+            None if there is no earlier version.
     """
 
     naming: Naming

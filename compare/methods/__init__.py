@@ -4,7 +4,8 @@
 >>> METHODS["rk4"].title
 'classical Runge-Kutta, order 4'
 
-A method prepares a problem and returns a function that integrates it, so that the integration can be timed alone:
+A method prepares a problem and returns a function that integrates it, so that the integration can
+be timed alone:
 
     from compare.methods.rhs.problem import Problem
 
@@ -13,8 +14,9 @@ A method prepares a problem and returns a function that integrates it, so that t
     outcome = work()                                # integrates
     outcome.states                                  # x, y, z, vx, vy, vz at problem.times
 
-The ids of all methods are known when one is first looked up: the files are imported then, and a method's library when
-it prepares a problem. They are listed by family, then by file, then as they stand in the file.
+The ids of all methods are known when one is first looked up: the files are imported then, and a
+method's library when it prepares a problem. They are listed by family, then by file, then as they
+stand in the file.
 """
 
 from __future__ import annotations
@@ -37,10 +39,12 @@ def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[s
 
     Args:
         commands: of programs of the user's own, as `candidates.external.arguments` accepts them.
-        names: one for each, or none at all: then each has the name of its program's file, shortened.
+        names: one for each, or none at all: then each has the name of its program's file,
+            shortened.
 
     Raises:
-        InputError: the names are not as many as the commands, not short and printable, or not distinct.
+        InputError: the names are not as many as the commands, not short and printable, or not
+            distinct.
     """
     if names and len(names) != len(commands):
         raise InputError(

@@ -1,10 +1,10 @@
 """Boost odeint, GSL, CVODE and ARKODE as their own users call them: a program in C++, of which no Python is a part.
 
-They stand beside the same codes behind a wrapper. The program is the traced equations and the library's part; it is
-compiled for the scene's equations once, and kept by its text, the compiler and the processor; a scene's numbers are in
-the file that it reads. It integrates, tells the CPU seconds of that by its own clock, and writes its states. A
-tolerance t means rtol = t and atol = t times each variable's swing; odeint takes one number for all, t times the
-smallest of them.
+They stand beside the same codes behind a wrapper. The program is the traced equations and the
+library's part; it is compiled for the scene's equations once, and kept by its text, the compiler
+and the processor; a scene's numbers are in the file that it reads. It integrates, tells the CPU
+seconds of that by its own clock, and writes its states. A tolerance t means rtol = t and atol = t
+times each variable's swing; odeint takes one number for all, t times the smallest of them.
 """
 
 from __future__ import annotations

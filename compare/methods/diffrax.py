@@ -1,7 +1,7 @@
 """Dormand-Prince 8(7), order 8, explicit Runge-Kutta with adaptive step: `Dopri8` of diffrax, compiled by JAX.
 
-It runs in binary64 on one thread of the processor. The relative tolerance is the setting, the absolute tolerance the
-setting times the smallest of the variables' swings.
+It runs in binary64 on one thread of the processor. The relative tolerance is the setting, the
+absolute tolerance the setting times the smallest of the variables' swings.
 """
 
 from __future__ import annotations

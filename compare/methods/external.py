@@ -33,8 +33,9 @@ def file_name(command: str) -> str:
 def external(command: str, *, name: str = "external") -> Method:
     """Declare a method that runs a command, whose output is read as a candidate; `name` is its id in tables.
 
-    It may use the placeholders of `foucault score --run`, and {setting} for the step that a study varies. It has to
-    print the scene's grid times; {t_end} and {grid_step} are those of the problem's times.
+    It may use the placeholders of `foucault score --run`, and {setting} for the step that a study
+    varies. It has to print the scene's grid times; {t_end} and {grid_step} are those of the
+    problem's times.
     """
     return Method(
         id=name,

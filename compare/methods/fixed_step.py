@@ -22,7 +22,8 @@ from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
 Step = Callable[[Sequence[Any], Any, Derivatives], Sequence[Any]]
-# a step may be longer than the setting by this part: 60 s then hold 600 steps of 0.1 s, although 0.1 is not a double
+# a step may be longer than the setting by this part: 60 s then hold 600 steps of 0.1 s, although
+# 0.1 is not a double
 ROUNDING = 1e-9
 _MARCH = """
 @nb.njit("int64(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1])", **OPTIONS)
@@ -116,8 +117,9 @@ def traced_step(problem: Problem, step: Step) -> StraightLine:
 def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
     """Return the `prepare` of a method that takes explicit steps of a fixed size in s.
 
-    The step is compiled for a problem's system. It is shortened where output times are not a whole number of steps
-    apart, and the run ends after the first output time at which the state is not finite.
+    The step is compiled for a problem's system. It is shortened where output times are not a whole
+    number of steps apart, and the run ends after the first output time at which the state is not
+    finite.
 
     Args:
         step: `step(state, h, derivatives)` in the model's generic style.

@@ -1,9 +1,10 @@
 """Gauss-Legendre collocation with 8 stages, order 16: implicit Runge-Kutta, symplectic, fixed step, by this project.
 
-It is symmetric in time and conserves every quadratic invariant. In `momentum` these are n·n, H·n and, without drag, the
-energy: whatever the step, the bob stays on the sphere and keeps its energy. The stages are found by fixed-point
-iteration, which starts from the polynomial of the step before and stops where only rounding is left; sums over steps
-are compensated (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.2, VIII.5, VIII.6).
+It is symmetric in time and conserves every quadratic invariant. In `momentum` these are n·n, H·n
+and, without drag, the energy: whatever the step, the bob stays on the sphere and keeps its energy.
+The stages are found by fixed-point iteration, which starts from the polynomial of the step before
+and stops where only rounding is left; sums over steps are compensated (Hairer, Lubich, Wanner,
+Geometric Numerical Integration, IV.2, VIII.5, VIII.6).
 """
 
 from __future__ import annotations
@@ -90,8 +91,8 @@ def gauss(stages: int) -> tuple[Array, Array, Array]:
     """Return the Gauss-Legendre method of order 2 stages, rounded once, and a prediction of the next step's stages.
 
     Returns:
-        a_ij, shape (stages, stages); b_j, shape (stages,); and the weights of a step's slopes in the first guess for
-        the next step's, shape (stages, stages).
+        a_ij, shape (stages, stages); b_j, shape (stages,); and the weights of a step's slopes in
+        the first guess for the next step's, shape (stages, stages).
 
     Raises:
         TableauError: the quadrature does not have that order.

@@ -1,10 +1,12 @@
 """Taylor series, order set by the tolerance, adaptive step: heyoka in double, long double, quadruple and MPFR.
 
-In a fixed number type `space` is more accurate than `momentum`: while the cord is under tension, `space` corrects the
-rounding errors of |n|, whereas `momentum` keeps them, which changes the period (1e-12 against 8e-12 m after a day of
-Paris in double, 4e-16 against 5e-15 m in long double). Where more bits are available, `momentum` is faster.
+In a fixed number type `space` is more accurate than `momentum`: while the cord is under tension,
+`space` corrects the rounding errors of |n|, whereas `momentum` keeps them, which changes the period
+(1e-12 against 8e-12 m after a day of Paris in double, 4e-16 against 5e-15 m in long double). Where
+more bits are available, `momentum` is faster.
 
-`heyoka_real128` computes in MPFR of 113 bits: the same format as quadruple, as fast, and part of every wheel.
+`heyoka_real128` computes in MPFR of 113 bits: the same format as quadruple, as fast, and part of
+every wheel.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Compiled libraries: where their headers are here and of which version, and what they write to stdout and stderr.
 
-Looked into are the folders of the variables CPATH and CPLUS_INCLUDE_PATH, which compilers obey as well, then this
-Python's environment, then the system. What they write is captured below Python's own streams, but only in a process
-that was started to run methods, as descriptors belong to the whole process: in a user's process libraries print where
-they like.
+Looked into are the folders of the variables CPATH and CPLUS_INCLUDE_PATH, which compilers obey as
+well, then this Python's environment, then the system. What they write is captured below Python's
+own streams, but only in a process that was started to run methods, as descriptors belong to the
+whole process: in a user's process libraries print where they like.
 """
 
 from __future__ import annotations
@@ -124,8 +124,8 @@ def quoted(output: bytes | bytearray) -> str:
 def captured() -> Iterator[bytearray]:
     """Redirect the file descriptors of stdout and stderr to a file while a library runs; one at a time.
 
-    What other threads print meanwhile is captured too. In a user's process nothing is. All of it is in what is yielded
-    when the context has ended.
+    What other threads print meanwhile is captured too. In a user's process nothing is. All of it is
+    in what is yielded when the context has ended.
     """
     output = bytearray()
     if not isolated:

@@ -55,14 +55,16 @@ class RunOutcome:
     """The result of a run. A numerical failure is an outcome too, with its reason and the states before it.
 
     Attributes:
-        status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or infinity.
+        status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or
+            infinity.
         reached_t: last output time that was reached, in s.
-        rows: computes x, y, z in m and vx, vy, vz in m/s at the output times that were reached: an array of shape
-            (rows, 6), or a table where the number type is finer than binary64; it is called at most once, so that the
-            conversion is not timed with the run.
+        rows: computes x, y, z in m and vx, vy, vz in m/s at the output times that were reached: an
+            array of shape (rows, 6), or a table where the number type is finer than binary64; it is
+            called at most once, so that the conversion is not timed with the run.
         reason: why it is not ok, in the library's words if it has any; or its warning.
         steps: number of steps, None if the method does not report it.
-        rhs_evaluations: number of evaluations of the right-hand side (None for Taylor methods, which make none).
+        rhs_evaluations: number of evaluations of the right-hand side (None for Taylor methods,
+            which make none).
         cpu_s: CPU seconds as measured by the run itself, if another process did the work.
     """
 
@@ -104,24 +106,30 @@ class Method:
     Attributes:
         id: its name on the command line.
         title: its name in tables, with the order.
-        setting: the quantity that a study varies: `step` in s, `tolerance` (relative), `precision` in bits.
+        setting: the quantity that a study varies: `step` in s, `tolerance` (relative), `precision`
+            in bits.
         ladder: settings from loose to tight, for the pendulum of Paris; see `settings`.
         source: publication or origin of the code.
         licence: of the code that integrates.
-        prepare: imports and compiles everything for a problem and a setting, and returns a function that only
-            integrates, which may be called repeatedly.
-        formulations: those that it may be used with; the first suits it best, or is the one it was written for.
+        prepare: imports and compiles everything for a problem and a setting, and returns a function
+            that only integrates, which may be called repeatedly.
+        formulations: those that it may be used with; the first suits it best, or is the one it was
+            written for.
         requires: modules that must be installed.
         native: the library of C or C++ whose headers must be here.
-        extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if nothing is needed.
+        extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if
+            nothing is needed.
         longest_s: simulated time in s beyond which a run would take unreasonably long.
-        order: where it is fixed, proved by the tableau of this project's methods; None where the method chooses it.
+        order: where it is fixed, proved by the tableau of this project's methods; None where the
+            method chooses it.
         family: methods of a family share a colour and a panel in reports.
         number: number type that it computes in, as tables print it.
-        stability: the runs of it that `foucault stability` makes, each a formulation (None: the first that can describe
-            the motion) and a setting; a step is given as a part of 2π over the fastest rate of the scene.
+        stability: the runs of it that `foucault stability` makes, each a formulation (None: the
+            first that can describe the motion) and a setting; a step is given as a part of 2π over
+            the fastest rate of the scene.
         long_runs: the runs of it over thirty days, each a formulation and a setting.
-        precision_runs: the same for `foucault study --precisions`, from the bits that are asked for.
+        precision_runs: the same for `foucault study --precisions`, from the bits that are asked
+            for.
     """
 
     id: str
@@ -151,7 +159,8 @@ class Method:
     def settings(self, scene: Scene) -> tuple[float, ...]:
         """Return the ladder for a scene: steps in proportion to its period, other settings unchanged.
 
-        The ladder's steps are for the pendulum of Paris; the proportion is rounded to 1, 2 or 5 times a power of ten.
+        The ladder's steps are for the pendulum of Paris; the proportion is rounded to 1, 2 or 5
+        times a power of ten.
         """
         inputs = scene.exact
         if self.setting != "step" or not inputs.gravity:
@@ -186,10 +195,12 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any)
 
     Args:
         problem: as it was integrated.
-        states: of the problem's variables at its first output times, shape (rows, variables); a run with fewer rows
-            than times has stopped early; rows from the first NaN or infinity on are left out.
+        states: of the problem's variables at its first output times, shape (rows, variables); a run
+            with fewer rows than times has stopped early; rows from the first NaN or infinity on are
+            left out.
         reason: the library's own, if it gave one.
-        fields: of `RunOutcome`, if the library reports them: `steps`, `rhs_evaluations` and `cpu_s`.
+        fields: of `RunOutcome`, if the library reports them: `steps`, `rhs_evaluations` and
+            `cpu_s`.
     """
     rows = leading(np.isfinite(states).all(axis=1))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0

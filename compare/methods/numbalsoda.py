@@ -1,8 +1,8 @@
 """DOP853 (explicit Runge-Kutta, order 8) and LSODA (multistep, orders 1 to 12), compiled: numbalsoda.
 
-They are Fortran and C, and no Python runs between their steps. The relative tolerance is the setting; the absolute
-tolerance is one number for all variables, the setting times the smallest of their swings. The library is built from
-source, which needs a Fortran compiler.
+They are Fortran and C, and no Python runs between their steps. The relative tolerance is the
+setting; the absolute tolerance is one number for all variables, the setting times the smallest of
+their swings. The library is built from source, which needs a Fortran compiler.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Gragg-Bulirsch-Stoer extrapolation, variable order, and IAS15, Gauss-Radau of order 15: REBOUND.
 
-Forces are compiled to C functions. REBOUND is under the GPL and used only if it is installed. Bulirsch-Stoer integrates
-the system as an `ode` of REBOUND's, with eps_rel the setting and eps_abs the setting times the smallest of the
-variables' swings. IAS15 moves one particle at n = r/l under the accelerations of the formulation `space`; its tolerance
-is `epsilon`, 1e-9 by REBOUND's own choice. Steps end on the output times.
+Forces are compiled to C functions. REBOUND is under the GPL and used only if it is installed.
+Bulirsch-Stoer integrates the system as an `ode` of REBOUND's, with eps_rel the setting and eps_abs
+the setting times the smallest of the variables' swings. IAS15 moves one particle at n = r/l under
+the accelerations of the formulation `space`; its tolerance is `epsilon`, 1e-9 by REBOUND's own
+choice. Steps end on the output times.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Runge-Kutta-Munthe-Kaas, order 4, explicit Lie-group method, fixed step, by this project: n stays on the sphere.
 
-n' = ω × n with ω = n × n' is solved in the group of rotations: n = cay(u) n₀, and u' = dcay⁻¹_u(ω) is an ordinary
-vector equation, to which the classical tableau applies. The Cayley map is rational, and its inverse differential has
-three terms, so that no series is truncated and nothing is singular. The other half of the state, H or w, is a vector.
+n' = ω × n with ω = n × n' is solved in the group of rotations: n = cay(u) n₀, and u' = dcay⁻¹_u(ω)
+is an ordinary vector equation, to which the classical tableau applies. The Cayley map is rational,
+and its inverse differential has three terms, so that no series is truncated and nothing is
+singular. The other half of the state, H or w, is a vector.
 """
 
 from __future__ import annotations

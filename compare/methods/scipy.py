@@ -1,8 +1,9 @@
 """Runge-Kutta 5(4) and 8(5,3), Radau IIA of order 5, BDF (orders 1 to 5), LSODA (1 to 12): SciPy's `solve_ivp`.
 
-The right-hand side is compiled and, for the implicit methods, the Jacobian. A tolerance t means rtol = t and atol = t
-times each variable's swing, so that a variable which passes zero is controlled to the same part of its amplitude as one
-which does not. Output is each method's own dense output, through `t_eval`.
+The right-hand side is compiled and, for the implicit methods, the Jacobian. A tolerance t means
+rtol = t and atol = t times each variable's swing, so that a variable which passes zero is
+controlled to the same part of its amplitude as one which does not. Output is each method's own
+dense output, through `t_eval`.
 """
 
 from __future__ import annotations

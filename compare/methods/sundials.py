@@ -1,8 +1,9 @@
 """Adams (orders 1 to 12) and BDF (orders 1 to 5), multistep: CVODE of SUNDIALS, through scikit-sundae.
 
-Both solve their implicit equations by Newton's method with a dense Jacobian, the library's default. The right-hand side
-and the Jacobian are compiled, but called through Python, a microsecond each. A tolerance t means rtol = t and atol = t
-times each variable's swing. Output is CVODE's own dense output.
+Both solve their implicit equations by Newton's method with a dense Jacobian, the library's default.
+The right-hand side and the Jacobian are compiled, but called through Python, a microsecond each. A
+tolerance t means rtol = t and atol = t times each variable's swing. Output is CVODE's own dense
+output.
 """
 
 from __future__ import annotations

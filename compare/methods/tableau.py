@@ -1,10 +1,11 @@
 """Runge-Kutta and Runge-Kutta-Nyström tableaux in exact fractions, which check their own order by rooted trees.
 
-The Taylor series of the solution and of the method are sums over the same rooted trees (Hairer, Nørsett,
-Wanner, Solving Ordinary Differential Equations I, II.14): a vertex is an f, and hangs from the vertex below
-it by one of f's arguments, y' (then it is integrated once) or y (twice); a y argument may also end in y'
-itself, whose weight is the node c. A method has order p if it integrates every tree of up to p vertices as
-the exact solution does. A Runge-Kutta method for y' = f(y) has the trees whose only arguments are y'.
+The Taylor series of the solution and of the method are sums over the same rooted trees (Hairer,
+Nørsett, Wanner, Solving Ordinary Differential Equations I, II.14): a vertex is an f, and hangs from
+the vertex below it by one of f's arguments, y' (then it is integrated once) or y (twice); a y
+argument may also end in y' itself, whose weight is the node c. A method has order p if it
+integrates every tree of up to p vertices as the exact solution does. A Runge-Kutta method for y' =
+f(y) has the trees whose only arguments are y'.
 """
 
 from __future__ import annotations
@@ -57,8 +58,8 @@ class Tableau:
 class NystromTableau:
     """An explicit Runge-Kutta-Nyström method for y'' = f(y, y') (RKNG: "general", with y' in f).
 
-    Stages Y_i = y + c_i h y' + h² Σ position_ij f_j and Y'_i = y' + h Σ velocity_ij f_j; the step is the same
-    with c = 1 and the weights.
+    Stages Y_i = y + c_i h y' + h² Σ position_ij f_j and Y'_i = y' + h Σ velocity_ij f_j; the step
+    is the same with c = 1 and the weights.
 
     Attributes:
         name: for messages.
@@ -132,7 +133,8 @@ def conditions(
     Args:
         order: the last one.
         arguments: those that are no trees: a y that ends in y'.
-        ways: how a tree can be an argument, by y' and by y: the method's coefficients in the stages, and its weights.
+        ways: how a tree can be an argument, by y' and by y: the method's coefficients in the
+            stages, and its weights.
     """
     arguments, residuals = list(arguments), [list[Fraction]() for _ in range(order + len(ways))]
     for power in range(1, order + 1):

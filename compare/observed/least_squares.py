@@ -23,7 +23,8 @@ def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbe
     """Return the least squares solution of `matrix` times it = `right`.
 
     Raises:
-        LinAlgError: a number is not finite. LAPACK would print that on stdout, where a JSON document may stand.
+        LinAlgError: a number is not finite. LAPACK would print that on stdout, where a JSON
+            document may stand.
     """
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         raise np.linalg.LinAlgError("numbers that are not finite")
@@ -34,9 +35,11 @@ def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers
     """Return the change of numbers by which slopes come nearest to what is left.
 
     Args:
-        slopes: what the rows change by with each number, shape (rows, numbers); all are brought to one size first.
+        slopes: what the rows change by with each number, shape (rows, numbers); all are brought to
+            one size first.
         left: the rows, less what the model has in their place, shape (rows,).
-        damping: holds back what the rows hardly tell: directions whose slope, of slopes made 1 each, is less than it.
+        damping: holds back what the rows hardly tell: directions whose slope, of slopes made 1
+            each, is less than it.
     """
     scale = np.linalg.norm(slopes, axis=0)
     scale[scale == 0] = 1.0
@@ -75,12 +78,15 @@ def gauss_newton(
     """Return the numbers that leave least, and the norm of what they leave; infinity where the first leave no numbers.
 
     Args:
-        model: returns what numbers leave, and a function that makes the slopes of `best_change` there; further slopes
-            are those of numbers that the model fits itself, because it is linear in them.
+        model: returns what numbers leave, and a function that makes the slopes of `best_change`
+            there; further slopes are those of numbers that the model fits itself, because it is
+            linear in them.
         start: first numbers.
         steps: that are taken at most.
-        gain: share of what was left that a step has to come below, or it is not taken and the search ends.
-        strays: whether another step may follow one that leaves plainly more, as one along a bent valley does.
+        gain: share of what was left that a step has to come below, or it is not taken and the
+            search ends.
+        strays: whether another step may follow one that leaves plainly more, as one along a bent
+            valley does.
     """
     best = start
     numbers = start

@@ -1,13 +1,14 @@
 """The swing plane of samples in double: its highest points, frequency and precession. A solved scene: solver/swing.py.
 
-A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its rest position. Let
-Z = X + iY be the displacement in the plane at right angles to the plumb line (X east, Y north), Z' its rate on the
-ground, Ω_n the component of Ω along the plumb line, and ω the frequency. In axes that do not turn, position and
-velocity over ω are Z and S = (Z' + i Ω_n Z)/ω, and the major axis of the ellipse has the direction
+A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its
+rest position. Let Z = X + iY be the displacement in the plane at right angles to the plumb line (X
+east, Y north), Z' its rate on the ground, Ω_n the component of Ω along the plumb line, and ω the
+frequency. In axes that do not turn, position and velocity over ω are Z and S = (Z' + i Ω_n Z)/ω,
+and the major axis of the ellipse has the direction
     ψ = arg(Z² + S²)/2.
-For Z = C1 exp(-iωt) + C2 exp(iωt) this is arg(4 C1 C2)/2 at every t. The axes on the ground and those that do not turn
-coincide at the moment in question, so ψ is the azimuth (from east to north) on the ground. It is counted modulo 180°,
-and it has no meaning on a circle (C1 or C2 zero).
+For Z = C1 exp(-iωt) + C2 exp(iωt) this is arg(4 C1 C2)/2 at every t. The axes on the ground and
+those that do not turn coincide at the moment in question, so ψ is the azimuth (from east to north)
+on the ground. It is counted modulo 180°, and it has no meaning on a circle (C1 or C2 zero).
 """
 
 from __future__ import annotations

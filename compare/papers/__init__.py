@@ -1,11 +1,14 @@
 """The three source papers: every formula and printed number recomputed, judged, and shown on a page.
 
-The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the linear pendulum by
-three methods (`three_methods.py`). A module of theirs holds a few sections; its function `checks` declares one row for
-every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
+The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the
+linear pendulum by three methods (`three_methods.py`). A module of theirs holds a few sections; its
+function `checks` declares one row for every printed formula, number or sentence, with the
+computation to compare it with. Verdicts are computed from these.
 
-- `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
-- `points.py`: random points at which formulas are evaluated, the Paris pendulum, and runs of the reference;
+- `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a
+  misprint);
+- `points.py`: random points at which formulas are evaluated, the Paris pendulum, and runs of the
+  reference;
 - `first_principles.py`: the yardstick of formulas, from the Lagrangian and its linear limit;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
 - `figures.py`: the first paper's figures, drawn again, and their captions;
@@ -16,7 +19,8 @@ every printed formula, number or sentence, with the computation to compare it wi
 >>> judged["mathar_45"].verdict, judged["mathar_45"].correction  # doctest: +SKIP
 ('misprint', 'the left side is y')
 
-`rows()` gives a `JudgedRow` for each declared row; `build(out)` also draws the figures and writes the page.
+`rows()` gives a `JudgedRow` for each declared row; `build(out)` also draws the figures and writes
+the page.
 """
 
 from __future__ import annotations
@@ -65,7 +69,8 @@ def build(out: Path, report: Report = lambda *_: None) -> list[JudgedRow]:
     """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder.
 
     Raises:
-        InputError: matplotlib or numba is not installed, or the folder holds another page or cannot be written.
+        InputError: matplotlib or numba is not installed, or the folder holds another page or cannot
+            be written.
     """
     from ..report.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files

@@ -1,13 +1,14 @@
 """How a printed line is judged: a row declares the print and how to compute the truth; its verdict is computed.
 
 - `Identity`: an equals sign in print. Both sides are evaluated at random points with 60 digits.
-- `Approximate`: an "≈" in print. Its error is taken at the paper's own numbers, and its order is measured by making
-  its small parameter smaller.
-- `PrintedNumber`: a numeral in print. It is reproduced if it is the recomputed value, rounded or cut off.
+- `Approximate`: an "≈" in print. Its error is taken at the paper's own numbers, and its order is
+  measured by making its small parameter smaller.
+- `PrintedNumber`: a numeral in print. It is reproduced if it is the recomputed value, rounded or
+  cut off.
 - `Statement`: a sentence that a computation can refute.
 
-A print that does not hold is a misprint only if the declared correction does hold: a row for which neither holds
-raises `UnexplainedError`. So nothing can be listed as wrong, or as right, by hand.
+A print that does not hold is a misprint only if the declared correction does hold: a row for which
+neither holds raises `UnexplainedError`. So nothing can be listed as wrong, or as right, by hand.
 """
 
 from __future__ import annotations
@@ -151,7 +152,8 @@ class Identity(Check):
 class Approximate(Check):
     """Printed with "≈": `pair(s)` gives print and truth with the small parameter s times the paper's own.
 
-    The error must shrink as s**order. `unit` is that of the error, which is relative if there is none.
+    The error must shrink as s**order. `unit` is that of the error, which is relative if there is
+    none.
     """
 
     pair: Callable[[Any], tuple[Value, Value]]
@@ -182,8 +184,9 @@ class Approximate(Check):
 class PrintedNumber(Check):
     """A number in print (`numeral`: the same in ASCII); `value` recomputes it.
 
-    `about`: the print says "about" or "near", and this is the scale it speaks of. `from_inputs`: the value from the
-    rounded inputs that the paper itself states (`inputs`), tried where the exact inputs do not give the print.
+    `about`: the print says "about" or "near", and this is the scale it speaks of. `from_inputs`:
+    the value from the rounded inputs that the paper itself states (`inputs`), tried where the exact
+    inputs do not give the print.
     """
 
     numeral: str

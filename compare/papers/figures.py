@@ -41,7 +41,8 @@ FIXED_STEP = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
 DAY: dict[str, Any] = {"xlabel": "t in h", "xlim": (0, 24), "xticks": range(0, 25, 6)}
 LATE: dict[str, Any] = {"xlim": (12000, 12020), "xticks": range(12000, 12021, 10)}
 EAST_WEST: dict[str, Any] = {"xlabel": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
-# inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
+# inches: as wide as a telephone's screen, where the letters then are as large as the text beside
+# them
 WIDE = 4.8
 FAINT_DOTS = 0.35  # their opacity
 EDGE = 0.5  # inches of a figure's height that no panel has
@@ -259,8 +260,10 @@ class Panel:
 
     Attributes:
         lines: its lines, in data coordinates.
-        axes: what matplotlib sets of the axes: labels, title, ends, ticks, and one scale for both ("aspect": "equal").
-        named: the lines are named in a legend beside the panel, inside it where both axes have one scale.
+        axes: what matplotlib sets of the axes: labels, title, ends, ticks, and one scale for both
+            ("aspect": "equal").
+        named: the lines are named in a legend beside the panel, inside it where both axes have one
+            scale.
         height: in inches.
         log: the y axis is logarithmic.
         bare: no axes; the lines are named beside their ends.

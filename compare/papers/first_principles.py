@@ -1,9 +1,9 @@
 """The yardstick of the papers' formulas: the Lagrangian, differentiated in high precision and never written out.
 
-The bob's place in axes that do not turn is composed of rotations and of the ellipsoid's geometry; its velocity is the
-derivative of that place, the kinetic energy half its square, and Euler and Lagrange give the equations of motion.
-With gravity alone and linear about straight down that is the linear pendulum of all three papers, whose exact motion is
-the exponential of its matrix.
+The bob's place in axes that do not turn is composed of rotations and of the ellipsoid's geometry;
+its velocity is the derivative of that place, the kinetic energy half its square, and Euler and
+Lagrange give the equations of motion. With gravity alone and linear about straight down that is the
+linear pendulum of all three papers, whose exact motion is the exponential of its matrix.
 """
 
 from __future__ import annotations

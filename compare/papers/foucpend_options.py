@@ -132,7 +132,8 @@ def _scene(values: Mapping[str, str]) -> Scene:
         scene = parse_scene({"id": "pend", "inputs": "binary64", **document})
     except InputError as error:
         raise _renamed(error, values) from None
-    # set after parsing: the limit on a scene's rows does not concern a program that prints them one by one
+    # set after parsing: the limit on a scene's rows does not concern a program that prints them one
+    # by one
     return scene.model_copy(update={"run": RunTable(**run)})
 
 

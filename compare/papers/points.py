@@ -1,7 +1,7 @@
 """Pendulums by which printed formulas are judged: random points, Paris, and runs of the reference such as its day.
 
-On the Earth a term such as RΩ² is hidden behind g; at random points all numbers are of order one and no term is small,
-so a wrong one shows at once.
+On the Earth a term such as RΩ² is hidden behind g; at random points all numbers are of order one
+and no term is small, so a wrong one shows at once.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ class Point:
     Attributes:
         radius, flattening, altitude, latitude: the planet's (latitude in degrees).
         length, gravity, rate: of the pendulum and of the rotation, l, g, Ω.
-        cord, azimuth: angles of the cord, φ and λ in Mathar, θ and φ in Gastebois; with rates and accelerations.
+        cord, azimuth: angles of the cord, φ and λ in Mathar, θ and φ in Gastebois; with rates and
+            accelerations.
         x, y: horizontal position, with velocities and accelerations.
         t, mass: a time and a mass.
     """
@@ -239,8 +240,9 @@ def paris_swing_plane() -> Array:
 def paris_passage() -> tuple[Array, Array]:
     """Return the states near the vertical, and how near a straight line through each passes it, in m.
 
-    The rest position lies south of the vertical, so that the swing passes nearest while its plane lies north and south.
-    Ten minutes before and after, the plane has turned by 1.9° and misses the vertical by 4 mm.
+    The rest position lies south of the vertical, so that the swing passes nearest while its plane
+    lies north and south. Ten minutes before and after, the plane has turned by 1.9° and misses the
+    vertical by 4 mm.
     """
     passage = paris_path()[0][np.abs(np.cos(paris_swing_plane())).argmin()]
     states = window(passage - 600, 1200, step=0.25)[1]

@@ -1,7 +1,8 @@
 """The set-up that all pictures share: figures, colours, logarithmic axes, lines with their names, SVG for a page.
 
-Every chart takes plain data and is an SVG element of a page. Text stays text, and the same data give the same bytes.
-Markers, dashes and labels repeat what the colours say, so nothing is lost in grey.
+Every chart takes plain data and is an SVG element of a page. Text stays text, and the same data
+give the same bytes. Markers, dashes and labels repeat what the colours say, so nothing is lost in
+grey.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from typing import Any
 from reference import InputError
 from reference.system.imports import needed
 
-# Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its darkest colour
+# Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its
+# darkest colour
 INKS = {
     "ink": "#1b1b1b", "faint": "#6b6b6b", "rule": "#dcdcdc", "band": "#e9e9e9", "paper": "#fefefe", "blue": "#0072b2",
 }  # fmt: skip
@@ -116,7 +118,8 @@ def check_target(path: Path, field: str = "--plot") -> None:
 def sheet(size: tuple[float, float]) -> Iterator[Any]:
     """Yield an empty figure of this size in inches; draw and save it inside the context.
 
-    The figure belongs to no window and not to pyplot, so that a caller's own settings of matplotlib stay as they are.
+    The figure belongs to no window and not to pyplot, so that a caller's own settings of matplotlib
+    stay as they are.
 
     Raises:
         InputError: matplotlib is not installed.
@@ -154,7 +157,8 @@ def picture(figure: Any, form: str = "svg") -> bytes:
 def _dark_scheme() -> str:
     """Return the rules that replace the inks on a dark page.
 
-    The colours stay in each element, so a program that does not know the rules draws the light picture.
+    The colours stay in each element, so a program that does not know the rules draws the light
+    picture.
     """
     rules = []
     for name, light in INKS.items():
@@ -178,7 +182,8 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
         figure: figure from `sheet`.
         name: another one for each picture in the page: the ids in the SVG depend on it.
         description: text for readers who cannot see the picture.
-        kind: CSS class; in class `lines` the page gives text a halo, so that it is legible over lines.
+        kind: CSS class; in class `lines` the page gives text a halo, so that it is legible over
+            lines.
     """
     from matplotlib import rc_context
 

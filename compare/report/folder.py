@@ -53,8 +53,8 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
     """Refuse a folder before the work; nothing is made.
 
     Raises:
-        InputError: it has one of these files but no page of ours, so that somebody else's would be replaced; it is no
-            folder, or cannot be written to.
+        InputError: it has one of these files but no page of ours, so that somebody else's would be
+            replaced; it is no folder, or cannot be written to.
     """
     with usable("--out", folder):
         existing = next((name for name in names if (folder / name).exists()), None)
@@ -77,7 +77,8 @@ def _is_ours(page: Path) -> bool:
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
     """Write files into a folder, each whole or not at all, the page first; other files in it are left alone.
 
-    Their checksums come last, in SHA256SUMS, by which `foucault verify` finds what was changed since.
+    Their checksums come last, in SHA256SUMS, by which `foucault verify` finds what was changed
+    since.
 
     Args:
         folder: created if it does not exist.

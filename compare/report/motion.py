@@ -16,7 +16,8 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Candidate
 from ..observed.swing_plane import Gauge, gauge_of
 
-# Rows that are too far apart for a line are replaced by this many single swings, spread over the span.
+# Rows that are too far apart for a line are replaced by this many single swings, spread over the
+# span.
 SWINGS = 9
 POINTS = 40  # per swing
 _COARSE = 3  # rows farther apart than this many of these points are not joined to a line

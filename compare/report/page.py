@@ -1,6 +1,7 @@
 """The parts of a report: tables as HTML, as text and as CSV; sections and figures; a self-contained page of them.
 
-Text is escaped wherever it is inserted in HTML, unless its type `Html` says that it is HTML already.
+Text is escaped wherever it is inserted in HTML, unless its type `Html` says that it is HTML
+already.
 """
 
 from __future__ import annotations
@@ -124,7 +125,8 @@ def page(
         title: title of the page.
         sections: results of `section`; the page links to their headings at the top.
         lead: introduction below the title.
-        script: elements with data and scripts; a page that has any may load nothing but scripts beside it.
+        script: elements with data and scripts; a page that has any may load nothing but scripts
+            beside it.
         styles: further styles.
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))
@@ -151,10 +153,12 @@ class PageTable:
     """Columns and rows.
 
     Attributes:
-        columns: title and kind of each: "" for text, `number` (aligned right), `prose` (wrapped), `line` (wrapped, but
-            wider), `wrapped` (wrapped anywhere; a table of only such columns is as wide as the page), or a CSS class.
+        columns: title and kind of each: "" for text, `number` (aligned right), `prose` (wrapped),
+            `line` (wrapped, but wider), `wrapped` (wrapped anywhere; a table of only such columns
+            is as wide as the page), or a CSS class.
         rows: cells, one for each column: text, HTML, a number, or None for an empty one.
-        kinds: CSS classes of each row: `front`, `failed`, `first` (of a group), a verdict, several, or none.
+        kinds: CSS classes of each row: `front`, `failed`, `first` (of a group), a verdict, several,
+            or none.
         anchors: ids by which the rows can be linked to.
     """
 
@@ -230,7 +234,8 @@ class PageTable:
     def csv(self) -> str:
         """Return CSV: a header line, doubles with all their digits, an empty field where there is no value.
 
-        Control characters are written out, and what a spreadsheet would run as a formula begins with an apostrophe.
+        Control characters are written out, and what a spreadsheet would run as a formula begins
+        with an apostrophe.
         """
         stream = io.StringIO()
         writer = csv.writer(stream, lineterminator="\n")

@@ -114,8 +114,9 @@ def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
 def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> float | None:
     """Return the least CPU seconds at which a method reaches an error; None if it does not reach it.
 
-    The cost is interpolated in logarithms between neighbouring settings on both sides of the error, never across a
-    failed setting and never beyond the ladder: if the loosest setting is already more accurate, its cost is returned.
+    The cost is interpolated in logarithms between neighbouring settings on both sides of the error,
+    never across a failed setting and never beyond the ladder: if the loosest setting is already
+    more accurate, its cost is returned.
     """
     if error_m < bound_m:
         return None

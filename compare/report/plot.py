@@ -72,7 +72,8 @@ def plot(source: Score | Candidate | Golden | Solution | AnyScene) -> Picture:
     """Draw the errors of a score against time, or a motion: its path, swing plane and transits.
 
     Args:
-        source: a score, a solution, a dataset, a candidate, or a scene, which is solved if no dataset has its motion.
+        source: a score, a solution, a dataset, a candidate, or a scene, which is solved if no
+            dataset has its motion.
 
     Raises:
         InputError: it is none of these, or matplotlib is not installed.

@@ -184,7 +184,8 @@ def _key(axes: Any, y: float, wide: float, present: set[Status]) -> None:
 def error_growth(runs: Sequence[LongRun]) -> str:
     """Draw the largest error so far of each run over time, log-log, with the exponent that was fitted to it.
 
-    Guide lines have the slopes t, t^1.5 (Brouwer's law) and t², and a band is the bound of the reference.
+    Guide lines have the slopes t, t^1.5 (Brouwer's law) and t², and a band is the bound of the
+    reference.
     """
     lines = [_line(run, i) for i, run in enumerate(runs)]
     guides = _guides(lines)

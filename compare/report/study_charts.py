@@ -79,7 +79,8 @@ def ladders(
 
     Args:
         curves: methods over their settings.
-        x_of: horizontal coordinate of a measured row; a row without one, or with zero or infinity, is left out.
+        x_of: horizontal coordinate of a measured row; a row without one, or with zero or infinity,
+            is left out.
         y_of: vertical coordinate, likewise.
         name: name of a curve's line.
     """

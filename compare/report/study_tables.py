@@ -27,7 +27,8 @@ _FRONT_MARK = "●"
 _PART_MARK = "~"
 _ABSENT = "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
-# processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
+# processes for each core; with more, runs share cores and caches, and the clock of wide vectors is
+# lower
 _MAX_LOAD = 1.0
 # difference of repeated costs over their median; with more, ratios of costs are doubtful
 _MAX_SPREAD = 0.2

@@ -1,7 +1,7 @@
 """The forms of a suite's outcomes: JSON, a page and a badge, tests in JUnit XML, annotations and a summary for GitHub.
 
-For GitHub Actions as it documents them: workflow commands on stdout, and Markdown appended to the file that
-GITHUB_STEP_SUMMARY names.
+For GitHub Actions as it documents them: workflow commands on stdout, and Markdown appended to the
+file that GITHUB_STEP_SUMMARY names.
 """
 
 from __future__ import annotations

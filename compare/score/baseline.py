@@ -1,7 +1,7 @@
 """Say what changed since a baseline: the rows of an earlier version, or the JSON document of their score.
 
-Both versions are explained down to a tenth of what lies between them, or to the tolerance if that is less. What one
-explanation has and the other has not is what changed.
+Both versions are explained down to a tenth of what lies between them, or to the tolerance if that
+is less. What one explanation has and the other has not is what changed.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Clocks that did not start at the release.
 
-Rows are counted from the first of them, if that is the release. Of passages the differences are compared: what the
-clock showed at the release is fitted, as an interval.
+Rows are counted from the first of them, if that is the release. Of passages the differences are
+compared: what the clock showed at the release is fitted, as an interval.
 """
 
 from __future__ import annotations
@@ -32,14 +32,15 @@ def counted_from_release(
 ) -> Candidate:
     """Return a candidate of which all times, also of transits, are since the release.
 
-    No row is changed whose times may be since the release already. Times from beyond the scene's end
-    on, or of a clock's text, are counted from the first row: this is the release if it has its position.
+    No row is changed whose times may be since the release already. Times from beyond the scene's
+    end on, or of a clock's text, are counted from the first row: this is the release if it has its
+    position.
 
     Args:
         candidate: rows of positions.
         scene: the problem.
-        tolerance_m: how far the first row may be off the release; None for `TOLERANCE` of its distance
-            from the vertical.
+        tolerance_m: how far the first row may be off the release; None for `TOLERANCE` of its
+            distance from the vertical.
 
     Raises:
         InputError: the first row is elsewhere, so that the time of the release is not known.
@@ -85,7 +86,8 @@ def _since(clock_s: float, times: Array) -> Array:
 def clock_starts(times: Sequence[Fraction], intervals: Iterable[Ends]) -> list[Ends]:
     """Return what a clock may have shown at the release, as intervals in s, the nearest to 0 first.
 
-    By such a clock each time lies in some interval. Two times or more are needed: one would fit at any.
+    By such a clock each time lies in some interval. Two times or more are needed: one would fit at
+    any.
 
     Args:
         times: of passages, by the clock, in s.

@@ -1,15 +1,16 @@
 """Measure a candidate's errors against the truth, following the IVP test set's conventions.
 
-Candidate and truth may agree to more digits than a double holds: both come as a double and its low part, and both
-parts are subtracted.
+Candidate and truth may agree to more digits than a double holds: both come as a double and its low
+part, and both parts are subtracted.
 
-A candidate whose ellipse is turned by a small angle δθ, and that is late by a small delay δτ, differs from the truth
-u = (x, y) - rest by
+A candidate whose ellipse is turned by a small angle δθ, and that is late by a small delay δτ,
+differs from the truth u = (x, y) - rest by
 
     δu = δθ (-u_y, u_x) - δτ (ẋ, ẏ),
 
-two unknowns that least squares finds from the rows of about one swing; the candidate's velocities are not needed.
-For wide swings the same fit gives the turn about the vertical and the delay that explain most of the error.
+two unknowns that least squares finds from the rows of about one swing; the candidate's velocities
+are not needed. For wide swings the same fit gives the turn about the vertical and the delay that
+explain most of the error.
 """
 
 from __future__ import annotations
@@ -82,8 +83,9 @@ class TrajectoryErrors:
     Attributes:
         t: times in s, shape (rows,).
         components: candidate minus truth per column that the candidate has, in m or m/s.
-        position: distance from the truth in m over the position columns that the candidate has, shape (rows,); if it
-            has transits alone, the truth's |vx|/ω there, by which the motion has to be off.
+        position: distance from the truth in m over the position columns that the candidate has,
+            shape (rows,); if it has transits alone, the truth's |vx|/ω there, by which the motion
+            has to be off.
         truth: at those times.
         bound_m: bound of the error of the truth at these times, in m.
         amplitude_m: the truth's largest distance from the vertical in m, the scale of the digits.
@@ -126,8 +128,8 @@ class TrajectoryErrors:
     def scd(self) -> float | None:
         """Significant correct digits: -log10 of the largest relative error of any component at the end.
 
-        As in the Test Set for IVP Solvers (Mazzia and Magherini); a component whose truth is 0 within its bound is
-        left out.
+        As in the Test Set for IVP Solvers (Mazzia and Magherini); a component whose truth is 0
+        within its bound is left out.
         """
         return self._digits_at_the_end(0.0, 0.0)
 
@@ -135,8 +137,8 @@ class TrajectoryErrors:
     def mescd(self) -> float | None:
         """Mixed error significant correct digits: -log10 of max |error| / (a + |truth|) over components at the end.
 
-        As in the Test Set for IVP Solvers, where a is atol/rtol; here a is the amplitude, and for velocities the
-        largest speed.
+        As in the Test Set for IVP Solvers, where a is atol/rtol; here a is the amplitude, and for
+        velocities the largest speed.
         """
         return self._digits_at_the_end(self.amplitude_m, self.speed_m_s)
 
@@ -195,7 +197,8 @@ def trajectory_errors(
     Args:
         candidate: the trajectory, each number a double and its low part.
         truth: at the candidate's times.
-        golden: dataset or solution of the truth; the scales are those of its whole grid, whatever the candidate has.
+        golden: dataset or solution of the truth; the scales are those of its whole grid, whatever
+            the candidate has.
     """
     # the truth is known at the double t; the candidate's row belongs to t + t_low
     t_low = candidate.low.get("t", np.zeros(1))
@@ -233,7 +236,8 @@ def _components(candidate: Candidate, truth: Dense, later: Array) -> dict[str, A
 def _linearization_bound_m(slopes: Array, t_low: Array) -> float:
     """Return a bound of what taking the truth as linear over t_low leaves out, in m.
 
-    This is a t_low²/2 (doubled, as a changes meanwhile), and the rounding of v, v t_low and two sums with it.
+    This is a t_low²/2 (doubled, as a changes meanwhile), and the rounding of v, v t_low and two
+    sums with it.
     """
     speeds = np.linalg.norm(slopes[:, :3], axis=1)
     pulls = np.linalg.norm(slopes[:, 3:], axis=1)

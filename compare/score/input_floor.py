@@ -14,7 +14,8 @@ from reference.system.cache import arrays
 
 from ..truth import by_function, shipping, with_function
 
-# in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
+# in a span, at least half of them up to the end asked for: some in every swing, or hundreds of
+# swings
 _TIMES = 577
 # changes with the content of the cached entries, so that older ones are computed again
 _FORMAT = "floor 3"
@@ -24,8 +25,9 @@ _STEEP = 0.25  # of the length: where z is less, it does not follow well from x 
 def input_floor(scene: Scene, until: float) -> float:
     """Return how far, in m, rounding the decimal inputs to binary64 moves the bob up to a time in s.
 
-    It depends on the scene alone and is the same for every candidate. If both motions ship it is their
-    distance; otherwise it is an estimate, and one cached run serves all ends within a factor of two.
+    It depends on the scene alone and is the same for every candidate. If both motions ship it is
+    their distance; otherwise it is an estimate, and one cached run serves all ends within a factor
+    of two.
     """
     ships = floor_of_what_ships(scene, until)
     if ships is not None:
@@ -57,8 +59,8 @@ def _entry_name(decimal: Scene, end_s: float) -> str:
 def floor_of_what_ships(scene: Scene, until: float) -> float | None:
     """Return how far, in m, rounding the inputs to binary64 moves the bob up to a row of the grid that is not before.
 
-    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the
-    latter's x and y; z follows from the sphere. None if they do not ship.
+    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of
+    the latter's x and y; z follows from the sphere. None if they do not ship.
     """
     decimal = scene.with_values(["inputs=decimal"])
     binary64 = scene.with_values(["inputs=binary64"])

@@ -96,9 +96,11 @@ def judge(
     """Judge a candidate against the truth of a scene.
 
     Args:
-        candidate: the trajectory, at its own times; the path of its file; or columns by name, as in a header, t, x, y
-            and any of z, vx, vy, vz, in a mapping or a pandas.DataFrame; None to judge transits alone.
-        scene: the problem that it claims to solve: a scene, its id, the path of a TOML file, or nested mappings.
+        candidate: the trajectory, at its own times; the path of its file; or columns by name, as in
+            a header, t, x, y and any of z, vx, vy, vz, in a mapping or a pandas.DataFrame; None to
+            judge transits alone.
+        scene: the problem that it claims to solve: a scene, its id, the path of a TOML file, or
+            nested mappings.
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
@@ -106,14 +108,14 @@ def judge(
         covers: share of the scene's span, from 0 to 1, that the rows have to reach for it to agree.
         as_model: whether agreement as a named model is enough for it to pass.
         explain: whether to look for the reasons if a position is off.
-        baseline: an earlier version, to say what changed since: its score, its trajectory or the path of its file, or a
-            document of `foucault score --json` or the path of one (.json).
+        baseline: an earlier version, to say what changed since: its score, its trajectory or the
+            path of its file, or a document of `foucault score --json` or the path of one (.json).
         announce: called with a message before the scene is solved, which takes long.
         report: called with the simulated time reached, in s, while the scene is solved.
 
     Raises:
-        InputError: the candidate or the scene cannot be read, a time of the candidate is outside the scene's span, or
-            the tolerance is not positive.
+        InputError: the candidate or the scene cannot be read, a time of the candidate is outside
+            the scene's span, or the tolerance is not positive.
         UnreachableError: the scene cannot be solved.
     """
     options = checked_options(tolerance, inputs, t_end, covers, as_model, explain)

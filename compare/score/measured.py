@@ -67,11 +67,13 @@ class Measured:
         name: of the candidate.
         ranges: what was proved, at the times of its rows.
         rows: the number of rows up to the end of the scene.
-        transits: the number of its transits or passages at times where the proof decides; None if it has none.
+        transits: the number of its transits or passages at times where the proof decides; None if
+            it has none.
         outside: every number that contradicts the proof, the farthest of a column first.
         notes: remarks that a reader ought to know.
         section: the word of the section whose passages the transits are; None for transits.
-        starts: what the clock may have shown at the release, in s, if all passages fit by such a clock alone.
+        starts: what the clock may have shown at the release, in s, if all passages fit by such a
+            clock alone.
     """
 
     name: str
@@ -158,8 +160,8 @@ def measured(
         report: called with the simulated time reached, in s.
 
     Raises:
-        InputError: no row or passage lies within the scene's span, or the proof decides nothing at any
-            of the times.
+        InputError: no row or passage lies within the scene's span, or the proof decides nothing at
+            any of the times.
         UnreachableError: the box is too wide.
     """
     times = _Times.of(candidate, passages, ranges.scene.exact.t_end)

@@ -39,7 +39,8 @@ class PassageScore:
         tolerance_m: largest weighted error allowed, in m.
         bound_m: how well the truth is known, as a distance in m.
         level: that of the truth.
-        starts: what the clock may have shown at the release, in s, if all passages are right by such a clock alone.
+        starts: what the clock may have shown at the release, in s, if all passages are right by
+            such a clock alone.
     """
 
     name: str

@@ -25,8 +25,8 @@ _SAME = 1e-3  # relative difference of ratios that count as one scale
 def scale_beyond_the_cord(candidate: Candidate, scene: Scene, truth: Array) -> Deviation | None:
     """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None.
 
-    A unit is named if the rows, in metres then, differ from the truth by less than its size: those of
-    another pendulum do not.
+    A unit is named if the rows, in metres then, differ from the truth by less than its size: those
+    of another pendulum do not.
 
     Args:
         candidate: rows of positions.

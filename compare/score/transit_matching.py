@@ -1,9 +1,9 @@
 """Match a candidate's transits (xdot = 0) with the truth's, in order, and name the missed and the extra ones.
 
-Where the swing plane passes north-south, |ax| at a transit is small and its time is ill-conditioned. The error of a
-time is therefore weighted by |ax|/ω, which makes it the distance in m by which the bob's motion has to be off.
-An error of the motion within the tolerance may also make two close transits vanish or appear together: those count
-as undecided, not as missed or extra.
+Where the swing plane passes north-south, |ax| at a transit is small and its time is
+ill-conditioned. The error of a time is therefore weighted by |ax|/ω, which makes it the distance in
+m by which the bob's motion has to be off. An error of the motion within the tolerance may also make
+two close transits vanish or appear together: those count as undecided, not as missed or extra.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ class TransitErrors:
         missed: times of the truth's transits that the candidate lacks.
         extra: times of the candidate's transits that the truth lacks.
         at: the truth's times of the matched ones.
-        undecided: times of missed and extra ones that a motion within the tolerance may or may not have.
+        undecided: times of missed and extra ones that a motion within the tolerance may or may not
+            have.
     """
 
     errors_s: Array
@@ -151,11 +152,12 @@ def transit_errors(
     Args:
         times: the candidate's, in order, in s; of equal ones all but one are extra.
         truth: the truth's times, increasing, in s.
-        slopes: how fast the distance from the form's zero grows at these times, in m/s: it weights their errors.
+        slopes: how fast the distance from the form's zero grows at these times, in m/s: it weights
+            their errors.
         until: end of the candidate's run in s: later zeros are not missed.
         tolerance_m: largest weighted error that counts as none, in m.
-        away: returns how far in m the truth is from such a zero at increasing times; without it no extra one is
-            excused.
+        away: returns how far in m the truth is from such a zero at increasing times; without it no
+            extra one is excused.
     """
     owner = _owners(times, truth)
     matched = owner >= 0
@@ -259,8 +261,8 @@ def judged_transits(
 ) -> TransitErrors:
     """Return the errors of a candidate's transits, but of those after the truth's end or left open by its proof.
 
-    A transit of the truth after the end of the run is left out, unless an error within the tolerance
-    moves it into the run.
+    A transit of the truth after the end of the run is left out, unless an error within the
+    tolerance moves it into the run.
 
     Args:
         times: the candidate's transits, in order, in s.

@@ -37,7 +37,8 @@ class Score:
         candidate: the trajectory that was judged.
         scene: the problem, its inputs read as decimals or as doubles.
         why_inputs: the reason for that reading.
-        golden: the dataset that the truth comes from, or the scene solved to no more than the verdict takes.
+        golden: the dataset that the truth comes from, or the scene solved to no more than the
+            verdict takes.
         errors: at the candidate's times.
         tolerance_m: largest position error allowed, in m.
         swing: turn of the swing plane and delay.
@@ -48,7 +49,8 @@ class Score:
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
         explanation: the likely reasons for the error; None if they were not looked for.
-        experiments: runs of the program with other numbers, and what they measured; None if none were asked for.
+        experiments: runs of the program with other numbers, and what they measured; None if none
+            were asked for.
         since: the changes since a baseline, if there is one.
     """
 

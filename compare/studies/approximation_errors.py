@@ -1,8 +1,9 @@
 """Errors of the analytic approximations against the reference: position and swing plane over time, single numbers.
 
-Two errors are measured: `error_m`, the largest distance between the approximate and the true bob up to a time, and
-`plane_error_arcsec`, the largest difference of the swing planes (`observed.swing_plane`), each about its own rest
-position: the direction that somebody who believes the approximation would draw on the floor.
+Two errors are measured: `error_m`, the largest distance between the approximate and the true bob up
+to a time, and `plane_error_arcsec`, the largest difference of the swing planes
+(`observed.swing_plane`), each about its own rest position: the direction that somebody who believes
+the approximation would draw on the floor.
 """
 
 from __future__ import annotations
@@ -76,7 +77,8 @@ class ReferenceMotion:
     def errors(self, motion: Motion) -> dict[str, Array]:
         """Return the largest errors of an approximation since the release at each time of the grid, by their names.
 
-        They are `error_m`, and `plane_error_arcsec`, which is NaN as long as one of the two swings has no plane.
+        They are `error_m`, and `plane_error_arcsec`, which is NaN as long as one of the two swings
+        has no plane.
 
         Raises:
             FoucaultError: the approximation does not apply, or fails.

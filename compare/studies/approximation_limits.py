@@ -86,8 +86,8 @@ def limits(
     Args:
         scene: to be approximated.
         chosen: the approximations.
-        over: `time` up to t_end, or `amplitude`, `latitude`, `length` with all errors up to t_end. Between the values
-            of a sweep the logarithm of the error is interpolated.
+        over: `time` up to t_end, or `amplitude`, `latitude`, `length` with all errors up to t_end.
+            Between the values of a sweep the logarithm of the error is interpolated.
         t_end: in s.
         swept: where to keep the rows of a sweep, by what is varied; None for nowhere.
     """
@@ -168,8 +168,8 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
     Args:
         scene: to start from.
         over: `latitude`: that field; `length`: of the cord, with the angle of release kept;
-            `amplitude`: horizontal distance of the release from the rest position in m, with its direction kept,
-            and the velocity of the release in proportion.
+            `amplitude`: horizontal distance of the release from the rest position in m, with its
+            direction kept, and the velocity of the release in proportion.
         value: its new value.
 
     Raises:

@@ -1,7 +1,8 @@
 """A campaign: many measurements in child processes, each result stored at once, so that it resumes where it stopped.
 
-None pays for another's memory or threads, and a hang (killed after a patience) or a crash loses only its own item.
-Cost is that of one core: every library gets one thread. The machine and its load are part of what is recorded.
+None pays for another's memory or threads, and a hang (killed after a patience) or a crash loses
+only its own item. Cost is that of one core: every library gets one thread. The machine and its load
+are part of what is recorded.
 """
 
 from __future__ import annotations
@@ -56,8 +57,10 @@ class Reports:
     """What a study calls while it works.
 
     Attributes:
-        solving: called while the truth is solved for, with what is solved (scenes, or days of one) and all of it.
-        measuring: called with the number of finished measurements, of all of them, and what runs now.
+        solving: called while the truth is solved for, with what is solved (scenes, or days of one)
+            and all of it.
+        measuring: called with the number of finished measurements, of all of them, and what runs
+            now.
     """
 
     solving: Callable[[float, float], None] | None = None
@@ -72,10 +75,12 @@ class Measurement(ABC, Generic[Item, Result]):
     """The measurement that a campaign repeats; it is sent to the child processes by pickle.
 
     Attributes:
-        recipe: what else than the items decides the results, to be written as JSON; together with machine and versions
-            of libraries it must be equal for a stored result to be used again.
-        patience_s: wall-clock seconds for one item, on a machine with a core for it; then its process is killed.
-        commands: of the user's programs, by the words that their items begin with; the command too must be equal.
+        recipe: what else than the items decides the results, to be written as JSON; together with
+            machine and versions of libraries it must be equal for a stored result to be used again.
+        patience_s: wall-clock seconds for one item, on a machine with a core for it; then its
+            process is killed.
+        commands: of the user's programs, by the words that their items begin with; the command too
+            must be equal.
         kind: class of the results.
     """
 
@@ -107,8 +112,10 @@ def campaign(
     Args:
         measurement: of each item.
         items: tuples of words and numbers, the first of which is shown as what runs now.
-        journal_path: a file of JSON lines to which results are appended; None if nothing is to be stored.
-        report: called before each measurement with the number of finished items, of all items, and what runs now.
+        journal_path: a file of JSON lines to which results are appended; None if nothing is to be
+            stored.
+        report: called before each measurement with the number of finished items, of all items, and
+            what runs now.
 
     Raises:
         InputError: the journal cannot be written.

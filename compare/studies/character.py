@@ -1,7 +1,7 @@
 """The difficulty of a scene, measured on the true trajectory, and why a method failed on it, as these numbers say.
 
-Rates are eigenvalues of the equations' Jacobian on the tangent space of the sphere: the four that belong to the
-motion, without those that a formulation adds off the sphere.
+Rates are eigenvalues of the equations' Jacobian on the tangent space of the sphere: the four that
+belong to the motion, without those that a formulation adds off the sphere.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ class Character:
         damping: largest rate of decay, 1/s.
         ratio: largest over smallest size of the rates that are not zero.
         magnified: largest factor by which the flow amplifies a displacement at the release.
-        least_tension: least tension of the cord per mass and length, 1/s²; below zero a rod is pushed.
+        least_tension: least tension of the cord per mass and length, 1/s²; below zero a rod is
+            pushed.
         nearest: least distance from the vertical through the suspension, over the length.
         amplitude: largest distance from it, over the length.
         span: t_end in s.
@@ -114,8 +115,9 @@ def _tangent_jacobian(state: Array, k: Constants) -> Array:
 def _magnified(scene: Scene, times: Array, length: float) -> float:
     """Return the largest response of the position to a displacement of the release, by the variational equations.
 
-    They follow a trajectory in double, which leaves the true one where little more than its errors is left; then runs
-    from neighbouring releases are compared in as many bits as that takes, and a relative change counts.
+    They follow a trajectory in double, which leaves the true one where little more than its errors
+    is left; then runs from neighbouring releases are compared in as many bits as that takes, and a
+    relative change counts.
     """
     response, factors = Sensitivity(scene, times), [1.0]
     for name in scene.exact.by_name.keys() & {

@@ -1,7 +1,7 @@
 """Long runs (30 days): does a method's error grow like t, like t^1.5 (Brouwer's law, rounding alone), or like t²?
 
-A phase error grows like t² if the energy drifts at a constant rate, like t^1.5 if it does a random walk, and like t if
-the frequency has a constant error.
+A phase error grows like t² if the energy drifts at a constant rate, like t^1.5 if it does a random
+walk, and like t if the frequency has a constant error.
 """
 
 from __future__ import annotations
@@ -96,9 +96,11 @@ def long_runs(
     """Measure the errors of methods over a long run, and solve for the truth if needed.
 
     Args:
-        items: method, formulation and setting of each run; `declared(methods, "long_runs")` lists them.
+        items: method, formulation and setting of each run; `declared(methods, "long_runs")` lists
+            them.
         scene: its inputs read as binary64; Paris over 30 days if None.
-        journal_path: a file to which results are appended, and whose results are not measured again.
+        journal_path: a file to which results are appended, and whose results are not measured
+            again.
         reports: of the simulated days while the truth is solved for, and of the runs.
     """
     scene = scene or load_scene(SCENE, ["inputs=binary64", "run.transits=false"])

@@ -1,11 +1,12 @@
 """One measurement: a method at a setting on a scene, its cost and error; every attempt gives a row, failed ones too.
 
-Only the integration itself is timed, in one thread, with output at the golden grid times. A probe over a short span
-comes first: it warms up, and it predicts the cost of the whole span. Where that exceeds the limit a part of the span is
-measured. What this part takes beyond the probe tells what the rest will take, so that a costly start, as of a stiff
-motion, is not counted again and again. Only if that exceeds the limit too is the cost extrapolated; the row says so,
-and has no error over the whole span: extrapolated by its growth over a 16th of the span, the error of 53 runs was off
-by up to 240 times.
+Only the integration itself is timed, in one thread, with output at the golden grid times. A probe
+over a short span comes first: it warms up, and it predicts the cost of the whole span. Where that
+exceeds the limit a part of the span is measured. What this part takes beyond the probe tells what
+the rest will take, so that a costly start, as of a stiff motion, is not counted again and again.
+Only if that exceeds the limit too is the cost extrapolated; the row says so, and has no error over
+the whole span: extrapolated by its growth over a 16th of the span, the error of 53 runs was off by
+up to 240 times.
 """
 
 from __future__ import annotations

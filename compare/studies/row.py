@@ -49,9 +49,10 @@ class Row:
         reason: why it is not OK.
         error_m: largest position error on the grid; None where only a part of it was run.
         end_error_m: position error at the last row reached.
-        transit_error_s: largest error of a transit's time, by one Newton step from the state at the true time; None
-            also where it is not resolved.
-        transit_floor_s: what is resolved of it, as the step begins at the double next to the true time.
+        transit_error_s: largest error of a transit's time, by one Newton step from the state at the
+            true time; None also where it is not resolved.
+        transit_floor_s: what is resolved of it, as the step begins at the double next to the true
+            time.
         h_drift: largest change of h, over the largest kinetic energy.
         cpu_s: median CPU seconds of the whole span.
         cpu_spread: largest minus smallest over the median.
@@ -59,7 +60,8 @@ class Row:
         rhs_evaluations: number of evaluations of the right-hand side.
         steps: number of steps.
         reached_t: last time reached, in s.
-        load: processes for each core that wanted to run when it was measured; None where the system does not tell.
+        load: processes for each core that wanted to run when it was measured; None where the system
+            does not tell.
     """
 
     method: str

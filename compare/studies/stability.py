@@ -1,8 +1,9 @@
 """Stiff and extreme scenes: which methods keep their digits, which fail, and which are silently wrong.
 
-Every method is asked for the same number of digits on every scene, and its result is compared with the truth. A run is
-silently wrong if it reports success with an error above a thousand times the requested one. It is ill-conditioned, and
-not the method's fault, if the motion itself magnifies the requested error, made at the release, by more than that.
+Every method is asked for the same number of digits on every scene, and its result is compared with
+the truth. A run is silently wrong if it reports success with an error above a thousand times the
+requested one. It is ill-conditioned, and not the method's fault, if the motion itself magnifies the
+requested error, made at the release, by more than that.
 """
 
 from __future__ import annotations
@@ -70,8 +71,10 @@ class Cell:
         cpu_s: CPU seconds; None without a result.
         reason: why it is not OK, in a sentence.
         steps: number of steps, None if the method does not report it.
-        wrong_from_s: time in s from which on a program's error is above what makes it wrong; None if it never is.
-        setting: step in s, relative tolerance or bits, as `kind` says ("step", "tolerance" or "precision").
+        wrong_from_s: time in s from which on a program's error is above what makes it wrong; None
+            if it never is.
+        setting: step in s, relative tolerance or bits, as `kind` says ("step", "tolerance" or
+            "precision").
         load: as in `Row`.
     """
 
@@ -125,7 +128,8 @@ def stability(
     Args:
         scenes: ids, or paths of TOML files; `default_scenes` if None.
         methods: ids; all that declare such runs if None.
-        programs: commands of programs of the user's own, by their names; each runs on every scene as well.
+        programs: commands of programs of the user's own, by their names; each runs on every scene
+            as well.
         limit_s: CPU seconds of a cell.
         journal_path: a file to which cells are appended, and whose cells are not run again.
         reports: of the scenes whose truth is known, and of the cells.

@@ -127,8 +127,8 @@ def study(
     """Measure error against run time of methods on a scene: `study("paris", ["rk4"], t_end=600).rows`.
 
     Args:
-        scene: a scene, its id, the path of a TOML file, or nested mappings; its inputs are read as binary64, because
-            that is the problem which methods in double solve.
+        scene: a scene, its id, the path of a TOML file, or nested mappings; its inputs are read as
+            binary64, because that is the problem which methods in double solve.
         methods: ids, each run over its settings; all if None.
         t_end: end of the span in s; the scene's own if None.
         formulations: whether to compare the formulations of the equations in one method as well.
@@ -170,8 +170,9 @@ class ObservedOrder:
         method: its id.
         formulation: of the equations of motion.
         declared: by the method; None of a user's program.
-        observed: exponent of the error against the steps, or the evaluations where steps are not told, or the inverse
-            of the step where neither is; None where the runs do not tell it from its neighbours.
+        observed: exponent of the error against the steps, or the evaluations where steps are not
+            told, or the inverse of the step where neither is; None where the runs do not tell it
+            from its neighbours.
         standard_error: of the fit.
         settings: number of settings that were fitted.
     """

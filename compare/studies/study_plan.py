@@ -17,7 +17,8 @@ from ..methods.rhs.problem import suited
 
 _FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
 _FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
-# longer scenes are cut to this, unless an end is given; over less, what a run costs at all hides digits
+# longer scenes are cut to this, unless an end is given; over less, what a run costs at all hides
+# digits
 SPAN_S = 14_400
 _MOST_BITS = 4096
 _SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
@@ -33,7 +34,8 @@ def plan(
     """List the runs: each method over its settings in the formulation that suits it, and one method in all of them.
 
     Args:
-        scene: steps are scaled to its swing, and a formulation must be able to describe its motion; read as doubles.
+        scene: steps are scaled to its swing, and a formulation must be able to describe its motion;
+            read as doubles.
         methods: ids; all if None.
         formulations: whether to compare the formulations in one method as well.
 
@@ -83,7 +85,8 @@ def precision_items(bits: Sequence[int], methods: Sequence[str] | None = None) -
         methods: ids; all if None.
 
     Raises:
-        InputError: a method is unknown, or declares no run for these precisions; or none can run here.
+        InputError: a method is unknown, or declares no run for these precisions; or none can run
+            here.
     """
     expected = "methods with these --precisions", "These have"
     runs = _runs(methods, lambda method: method.precision_runs(bits), "--methods", *expected)
@@ -163,9 +166,9 @@ def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Sce
 def on_doubles(scene: Scene) -> Scene:
     """Return the scene; if one of its grid times is not a double, with a grid step of few bits and the same end.
 
-    A method and the truth are then compared at the same times. 0.1 s is not a double, nor are most of its multiples;
-    between such a time and the nearest double the bob moves by some 1e-16 of its path, which would hide the error of a
-    method with many digits.
+    A method and the truth are then compared at the same times. 0.1 s is not a double, nor are most
+    of its multiples; between such a time and the nearest double the bob moves by some 1e-16 of its
+    path, which would hide the error of a method with many digits.
 
     Args:
         scene: its inputs read as binary64, so that its end is a double.

@@ -1,7 +1,7 @@
 """A user's program or file on one scene: its output, at whatever times it has, against the truth there.
 
-Unlike `methods.method.external`, which has a study time a program at the golden grid times, this asks only where it
-breaks, or how far a file is off.
+Unlike `methods.method.external`, which has a study time a program at the golden grid times, this
+asks only where it breaks, or how far a file is off.
 """
 
 from __future__ import annotations
@@ -94,7 +94,8 @@ def files_of(
         taken: names that other rows have, beside those of the methods.
 
     Raises:
-        InputError: a file cannot be read or has no positions, two have the same name, or the seconds are not as many.
+        InputError: a file cannot be read or has no positions, two have the same name, or the
+            seconds are not as many.
     """
     seconds = _stated_seconds(cpu, len(paths))
     files: dict[str, tuple[Candidate, float | None]] = {}

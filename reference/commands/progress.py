@@ -1,7 +1,7 @@
 """Progress of long work, on stderr: a bar on a terminal, elsewhere a line now and then.
 
-The remaining time follows from the rate of the last seconds, because work often starts slowly: code is
-compiled, processes begin, a first part is measured.
+The remaining time follows from the rate of the last seconds, because work often starts slowly: code
+is compiled, processes begin, a first part is measured.
 """
 
 from __future__ import annotations

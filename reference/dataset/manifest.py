@@ -69,8 +69,8 @@ class ManifestPart(BaseModel):
 class Bounds(ManifestPart):
     """How far any printed number may be from the truth, rounding to its digits included: m, m/s, s, m/s².
 
-    The first three are the largest of their kind, `transit_s` only where there are transits; `grid` and `transits` are
-    by column, the largest of all rows.
+    The first three are the largest of their kind, `transit_s` only where there are transits; `grid`
+    and `transits` are by column, the largest of all rows.
     """
 
     position_m: Decimal
@@ -169,7 +169,8 @@ class FileRecord(ManifestPart):
 class Manifest(ManifestPart):
     """`manifest.json`; numbers that matter are strings.
 
-    `seal` is the sha256 of the same text with an empty seal. It finds accidents; a forger can make it again.
+    `seal` is the sha256 of the same text with an empty seal. It finds accidents; a forger can make
+    it again.
     """
 
     schema_version: Literal[3]  # FORMAT

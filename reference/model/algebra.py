@@ -1,7 +1,7 @@
 """Arithmetic for numbers of any type (mpf, binary64, heyoka expression) that leaves exact zeros out.
 
-An exact zero is the int 0. It drops out of every sum and product here, so the equations of a scene hold only the
-terms that the scene has.
+An exact zero is the int 0. It drops out of every sum and product here, so the equations of a scene
+hold only the terms that the scene has.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """The constants of the equations of motion. A measured ("effective") g holds the centrifugal force: then R = 0 here.
 
-Constants are combined here in high precision and rounded once: a run that added gravity and the centrifugal force in
-double would carry that rounding error to its end. A constant that is zero by the exact inputs (at a pole, on the
-equator, without rotation, without drag) is the int 0, and its terms drop out of the equations (`algebra`).
+Constants are combined here in high precision and rounded once: a run that added gravity and the
+centrifugal force in double would carry that rounding error to its end. A constant that is zero by
+the exact inputs (at a pole, on the equator, without rotation, without drag) is the int 0, and its
+terms drop out of the equations (`algebra`).
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ class Constants:
     Attributes:
         length: cord length l in m.
         turn: rotation vector Ω in rad/s on the axes east, north, up.
-        pull: gravity plus centrifugal force at the pivot, over l, in 1/s²; effective gravity is both together.
+        pull: gravity plus centrifugal force at the pivot, over l, in 1/s²; effective gravity is
+            both together.
         centrifugal: Ω², Ωz², -Ωy Ωz, Ωy², the entries xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, in 1/s².
         drag: γ in 1/s.
         gravity: g/l in 1/s².
@@ -112,7 +114,8 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
     length, gravity, rate, radius, flattening, altitude = (
         to_mpf(getattr(inputs, name), ctx) for name in names
     )
-    # effective gravity contains the centrifugal force at the pivot: what is left is that of a pivot on the axis
+    # effective gravity contains the centrifugal force at the pivot: what is left is that of a pivot
+    # on the axis
     carried = inputs.gravity_is == "ellipsoid"
     try:
         distance = (

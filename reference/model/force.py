@@ -1,8 +1,8 @@
 """Force on the bob, tension of the cord, acceleration, the invariant h (energy) and the rest position.
 
-Axes x east, y north, z up, origin at the suspension. Lengths are divided by the cord length l, so that n = r/l, and
-times stay in seconds. The force per mass over l is, with the constants of `constants.Constants` (c = pull, Ω = turn,
-γ = drag),
+Axes x east, y north, z up, origin at the suspension. Lengths are divided by the cord length l, so
+that n = r/l, and times stay in seconds. The force per mass over l is, with the constants of
+`constants.Constants` (c = pull, Ω = turn, γ = drag),
 
     F(n, v) = c - Ω × (Ω × n) - 2 Ω × v - γ v,
 
@@ -49,7 +49,8 @@ def rates(state: Sequence[Any], k: Constants) -> tuple[Any, ...]:
 def invariant(n: Vector, v: Vector, k: Constants) -> Any:
     """Return h = v²/2 + g z - Ω²/2 (x² + q²) in m²/s², constant without drag.
 
-    q = R - y sin(latitude) + z cos(latitude), so that x² + q² is the squared distance from the Earth's axis.
+    q = R - y sin(latitude) + z cos(latitude), so that x² + q² is the squared distance from the
+    Earth's axis.
     """
     q = plus(k.axis_distance, product(-1, k.sin, n[1]), product(k.cos, n[2]))
     centrifugal = product(k.rate, k.rate, plus(product(n[0], n[0]), product(q, q)))
@@ -73,8 +74,8 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
         ctx: the context; θ is exact to its last few bits.
 
     Raises:
-        ValueError: none is singled out, as no force acts at the pivot, or as the rotation is so fast that the one next
-            to the plumb line is not stable.
+        ValueError: none is singled out, as no force acts at the pivot, or as the rotation is so
+            fast that the one next to the plumb line is not stable.
     """
     if is_zero(k.pull[1]) and is_zero(k.centrifugal[2]):
         if is_zero(k.pull[2]) and is_zero(k.centrifugal[3]):

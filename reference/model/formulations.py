@@ -33,8 +33,8 @@ class Formulation(Protocol):
 class Momentum:
     """H = n × (n' + Ω × n): n' = (H - Ω) × n, H' = n × c + H × Ω - γ n × n'.
 
-    Quadratic, and neutral off the sphere: |n| and n·H are conserved also where |n| is not 1, so an error in them does
-    not grow.
+    Quadratic, and neutral off the sphere: |n| and n·H are conserved also where |n| is not 1, so an
+    error in them does not grow.
     """
 
     name = "momentum"
@@ -62,8 +62,8 @@ class Momentum:
 class Inertial:
     """V = n' + Ω × n: n' = V - Ω × n, V' = c - Ω × V - n (V·V + n·c) - γ n'.
 
-    Rounding leaves the sphere as in `space`, and so do heyoka's runs; only limbs puts n back on the sphere after every
-    step (a projection).
+    Rounding leaves the sphere as in `space`, and so do heyoka's runs; only limbs puts n back on the
+    sphere after every step (a projection).
     """
 
     name = "inertial"
@@ -230,7 +230,8 @@ class Angles:
 class Lagrangian(Angles):
     """The system that `heyoka.lagrangian()` derives from L, kinetic minus potential energy: Mathar (16)-(21).
 
-    The angles are those of (7). `derivatives` is that of `Angles`, which gives the same rates; runs integrate heyoka's.
+    The angles are those of (7). `derivatives` is that of `Angles`, which gives the same rates; runs
+    integrate heyoka's.
     """
 
     name = "lagrangian"

@@ -1,8 +1,8 @@
 """Sections as affine forms: a·n + b·n' - d, whose zeros are the moments that are sought; n = r/l, axes x, y, z.
 
-xdot is the form with b along x. A gate lies along an azimuth and the plumb line at the pivot, through the rest
-position, or along z through the suspension; its form grows to the left of the azimuth. The highest points are where the
-velocity along the plumb line changes from up to down.
+xdot is the form with b along x. A gate lies along an azimuth and the plumb line at the pivot,
+through the rest position, or along z through the suspension; its form grows to the left of the
+azimuth. The highest points are where the velocity along the plumb line changes from up to down.
 """
 
 from __future__ import annotations

@@ -141,9 +141,9 @@ def scaled(vector: Vector, length: Any) -> Vector:
 def xdot_vanishes(start: Start) -> bool:
     """Return whether xdot is zero at all times, decided from exact zeros only (lemma in enclosure/THEOREM.md).
 
-    It is where the bob is released at rest and the force has no component along the sphere (straight up or down at a
-    pole or on the equator, or no force at all), and without rotation also where it is released in the plane x = 0 with
-    vx = 0.
+    It is where the bob is released at rest and the force has no component along the sphere
+    (straight up or down at a pole or on the equator, or no force at all), and without rotation also
+    where it is released in the plane x = 0 with vx = 0.
     """
     n, v = start.n, start.v
     if not any(v) and not any(cross(n, force(n, (0, 0, 0), start.k))):
@@ -154,10 +154,10 @@ def xdot_vanishes(start: Start) -> bool:
 def zero_at_release(start: Start) -> int:
     """Return the multiplicity of xdot's zero at t = 0 by the exact inputs, 0 to 4.
 
-    It is 1 where the bob is released with vx = 0, and more where the force has no x component either: 2 in the meridian
-    at rest, or along the Earth's axis; 4 in the meridian at rest with the cord at right angles to the axis, as the bob
-    then starts along it. Released at rest with a horizontal cord, to the east or at a pole, the bob falls straight
-    down, and x shrinks like t⁴.
+    It is 1 where the bob is released with vx = 0, and more where the force has no x component
+    either: 2 in the meridian at rest, or along the Earth's axis; 4 in the meridian at rest with the
+    cord at right angles to the axis, as the bob then starts along it. Released at rest with a
+    horizontal cord, to the east or at a pole, the bob falls straight down, and x shrinks like t⁴.
     """
     n, v, turn = start.n, start.v, start.k.turn
     at_pole = turn[1] == 0 and start.k.pull[1] == 0

@@ -19,7 +19,8 @@ Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
 Confirmation = Literal["whole", "sampled", "none"]  # how much of a proof heyoka confirms
 CONFIRMATIONS: tuple[Confirmation, ...] = get_args(Confirmation)
-# Sections: the moments of a motion that are sought besides the transits, each named by a word of the scene.
+# Sections: the moments of a motion that are sought besides the transits, each named by a word of
+# the scene.
 SECTION_SEPARATOR = "; "  # of several words in a text
 _SECTION_WORDS = "highest, lowest, gate AZIMUTH, gate AZIMUTH@0 or turn AZIMUTH"
 _AZIMUTH = "-?[0-9]{1,3}(?:[.][0-9]{1,200})?"

@@ -23,8 +23,9 @@ class Inputs:
     """The exact numbers of a scene: SI units, angles in degrees; `flattening` is 0 for a sphere.
 
     Exactly one of `position` (x, y, vx, vy) and `angles` (angle, azimuth, angle_rate, azimuth_rate)
-    is set, the one that the scene contains. `gravity_is` tells the pull along the ellipsoid's normal, to which the
-    centrifugal force comes, from the effective one along the plumb line, which contains that at the pivot.
+    is set, the one that the scene contains. `gravity_is` tells the pull along the ellipsoid's
+    normal, to which the centrifugal force comes, from the effective one along the plumb line, which
+    contains that at the pivot.
     """
 
     length: Fraction
@@ -45,7 +46,8 @@ class Inputs:
     def grid(self) -> list[Fraction]:
         """Output times in s: 0, grid_step, 2 grid_step, …, and t_end as the last.
 
-        Read as binary64, the last step may miss t_end by rounding alone: then t_end takes its place.
+        Read as binary64, the last step may miss t_end by rounding alone: then t_end takes its
+        place.
         """
         whole = int(self.t_end / self.grid_step)
         times = [k * self.grid_step for k in range(whole + 1)]

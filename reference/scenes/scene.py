@@ -232,7 +232,8 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
     """Check a scene given as nested mappings.
 
     Raises:
-        InputError: names each wrong field, what it got and what was expected; the first one is its `field`.
+        InputError: names each wrong field, what it got and what was expected; the first one is its
+            `field`.
     """
     if not isinstance(document, Mapping):
         raise InputError(
@@ -327,7 +328,8 @@ AnyScene = Scene | str | Path | Mapping[str, Any]
 def as_scene(scene: AnyScene) -> Scene:
     """Return a scene that is given as one, by its id or the path of a TOML file, or as nested mappings.
 
-    A float in the mappings stands for the decimal that Python prints for it: 0.1 is the decimal 0.1.
+    A float in the mappings stands for the decimal that Python prints for it: 0.1 is the decimal
+    0.1.
 
     Raises:
         InputError: it is none of these, or a field is wrong.

@@ -11,7 +11,8 @@ from ..system.documents import json_document
 from ..system.workspace import replace_file
 
 _INDEX = "index.json"
-# MB that the golden function in doubles would take, of scenes that ship without it: the others fill the 12 MB there are
+# MB that the golden function in doubles would take, of scenes that ship without it: the others fill
+# the 12 MB there are
 WITHOUT_FUNCTION = {
     "creeping": 27,
     "creeping_far": 14,

@@ -1,6 +1,7 @@
 """The initial value problem as methods get it: start and constants in double, right-hand side, conversion to metres.
 
-How far and how fast a bob can get, by its energy, gives the scales for tolerances, and which formulations hold.
+How far and how fast a bob can get, by its energy, gives the scales for tolerances, and which
+formulations hold.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ class FirstOrderSystem:
 
     Attributes:
         variables: names of the state's variables.
-        rates: `rates(state, functions, parameters)` returns their derivatives; see `tracing.record`.
+        rates: `rates(state, functions, parameters)` returns their derivatives; see
+            `tracing.record`.
         parameters: doubles by name, which `rates` gets as numbers; literals in it need none.
     """
 
@@ -101,8 +103,9 @@ class FirstOrderSystem:
 class SwingReach:
     """How far and how fast the bob can get, from its energy about the rest position.
 
-    Without the small gradient of the centrifugal force v²/2 - n·c is constant, so that the angle from the rest
-    position c/|c| never exceeds the one where v would vanish, nor the speed its value at the bottom.
+    Without the small gradient of the centrifugal force v²/2 - n·c is constant, so that the angle
+    from the rest position c/|c| never exceeds the one where v would vanish, nor the speed its value
+    at the bottom.
 
     Attributes:
         below: True if the bob stays below the horizontal, where the cord always pulls.
@@ -181,7 +184,8 @@ class Problem:
         """Return the problem of a scene, with output at its own grid times unless others are given.
 
         Raises:
-            InputError: the formulation cannot express the release, or the times do not increase from 0.
+            InputError: the formulation cannot express the release, or the times do not increase
+                from 0.
         """
         model, start = FORMULATIONS[formulation], Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
         try:
@@ -223,10 +227,11 @@ class Problem:
     def compiled(self, program: StraightLine, template: str, **texts: object) -> ModuleType:
         """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
 
-        Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the elements of arrays of
-        these names, as many as variables (`${size}`); `${k}` are those of the parameters. `${x}` and `${c}` are numbers
-        with names of their own, which `${unpack_y}` and `${unpack_k}` take from y and k. `${counter}` is the place
-        behind the parameters, of which libraries are given one at least.
+        Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the
+        elements of arrays of these names, as many as variables (`${size}`); `${k}` are those of the
+        parameters. `${x}` and `${c}` are numbers with names of their own, which `${unpack_y}` and
+        `${unpack_k}` take from y and k. `${counter}` is the place behind the parameters, of which
+        libraries are given one at least.
         """
         variables, parameters = len(self.start), len(self.system.parameters)
         for array in ("y", "z", "f", "p", "dy"):
@@ -271,8 +276,9 @@ def _increasing(times: npt.ArrayLike) -> Array:
 def suited(scene: Scene, formulations: Sequence[str]) -> str:
     """Return the first of some formulations that can describe the scene's whole motion.
 
-    `plane` holds below the horizontal only, and `space` leaves the sphere where a rod is pushed; for a bob whose energy
-    may take it there any other formulation is better, `space` is second best, and `plane` fails.
+    `plane` holds below the horizontal only, and `space` leaves the sphere where a rod is pushed;
+    for a bob whose energy may take it there any other formulation is better, `space` is second
+    best, and `plane` fails.
     """
     if SwingReach.of(Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)).below:
         return formulations[0]

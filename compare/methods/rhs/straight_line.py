@@ -1,7 +1,8 @@
 """Straight-line code: a list of elementary operations, printed as Python, compiled by numba and cached on disk.
 
-A generated module's file name is the hash of its text, so that equal sources share one compiled code, whichever scene
-or process needs it. Nothing in a source may depend on a scene's values: they are passed as arguments.
+A generated module's file name is the hash of its text, so that equal sources share one compiled
+code, whichever scene or process needs it. Nothing in a source may depend on a scene's values: they
+are passed as arguments.
 """
 
 from __future__ import annotations
@@ -77,7 +78,8 @@ def elements(array: str, count: int, row: str = "") -> str:
 def compiled(body: str) -> ModuleType:
     """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    What runs is this text, whatever its file holds: that is there for numba's cache, which goes by its name and times.
+    What runs is this text, whatever its file holds: that is there for numba's cache, which goes by
+    its name and times.
     """
     text = (HEADER + body).encode()
     name = f"f{hashlib.sha256(text).hexdigest()[:32]}"

@@ -1,10 +1,11 @@
 """Trace a generic function of numbers to straight-line source code, which numba can compile.
 
-The model is written once, for any number type (`reference.model.formulations`). Called with numbers that record the
-operations on them, it produces a list of elementary operations, in which each expression stands once and exact zeros
-are left out. Printed as Python, the list is a right-hand side, or a whole Runge-Kutta step, of nothing but arithmetic;
-numba compiles it as well as a C compiler would compile the same lines. The code differentiated is straight-line code
-too: the Jacobian that implicit methods need.
+The model is written once, for any number type (`reference.model.formulations`). Called with numbers
+that record the operations on them, it produces a list of elementary operations, in which each
+expression stands once and exact zeros are left out. Printed as Python, the list is a right-hand
+side, or a whole Runge-Kutta step, of nothing but arithmetic; numba compiles it as well as a C
+compiler would compile the same lines. The code differentiated is straight-line code too: the
+Jacobian that implicit methods need.
 
 >>> def kepler(state, functions):
 ...     x, y = state
@@ -47,7 +48,8 @@ class TracingError(TypeError):
 class TracedNumber:
     """A number that records the operations on it; it has no value, so that nothing may branch on it.
 
-    An exact zero, and factors of one and minus one, need no operation; no bit of the result depends on that.
+    An exact zero, and factors of one and minus one, need no operation; no bit of the result depends
+    on that.
     """
 
     __slots__ = ("_tape", "name")
@@ -149,9 +151,10 @@ def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str])
     """Trace a generic function.
 
     Args:
-        function: `function(numbers, functions)` returns a sequence of numbers; it may add, subtract, multiply, divide,
-            negate, raise to whole powers, and call sqrt, sin, cos, atan2 of `functions`. An int 0 stands for an exact
-            zero and drops out. Ints, floats and fractions become literals.
+        function: `function(numbers, functions)` returns a sequence of numbers; it may add,
+            subtract, multiply, divide, negate, raise to whole powers, and call sqrt, sin, cos,
+            atan2 of `functions`. An int 0 stands for an exact zero and drops out. Ints, floats and
+            fractions become literals.
         inputs: names of the numbers, in order; any identifiers but t0, t1, …
 
     Raises:
@@ -195,7 +198,8 @@ _OPERATORS: dict[str, Callable[..., Any]] = {
     "div": truediv,
     "neg": neg,
 }
-# the derivatives of an operation's result by each of its operands, from functions, the result and the operands
+# the derivatives of an operation's result by each of its operands, from functions, the result and
+# the operands
 _PARTIALS: dict[str, Callable[..., tuple[Any, ...]]] = {
     "add": lambda f, result, x, y: (1, 1),
     "sub": lambda f, result, x, y: (1, -1),

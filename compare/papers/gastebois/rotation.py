@@ -54,8 +54,9 @@ MEAN_RADIUS = mpf("6371008.7714")  # m, NIMA TR8350.2: mean radius of semi-axes
 def swing_period(length: Any, r0: Any, gravity: Any, rate: Any) -> tuple[Any, Any]:
     """Return period in s, and turn in rad a period, of a spherical pendulum let go at rest on ground that turns.
 
-    Closed form, in axes that do not turn: l² z'² = 2g (z - z1)(z - z2)(z - z3), z = z1 + (z2 - z1) sn², and the azimuth
-    is the elliptic integral of the third kind; z2 is the height of the release.
+    Closed form, in axes that do not turn: l² z'² = 2g (z - z1)(z - z2)(z - z3), z = z1 + (z2 - z1)
+    sn², and the azimuth is the elliptic integral of the third kind; z2 is the height of the
+    release.
     """
     high = -sqrt(length**2 - r0**2)
     speed = r0 * rate

@@ -71,7 +71,8 @@ def _by_parabola() -> Answer:
     xdot = path_in(load_scene("paris"), times)[:, 3]
     xdot[0] = 0.0  # released at rest, exactly
     zero, true = Transits().of(times, xdot)[0], float(transits("t")[0])
-    # of sin(wt) a parabola through three points h apart misses the zero by at most h³ w² max|s(s² - 1)|/6
+    # of sin(wt) a parabola through three points h apart misses the zero by at most h³ w² max|s(s² -
+    # 1)|/6
     bound = 0.065 * 0.01**3 * 9.80665 / 67
     return Answer(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
 

@@ -220,7 +220,8 @@ def build(
         The size of each page in bytes, by name.
 
     Raises:
-        InputError: there are no datasets, the folder belongs to somebody else, or matplotlib is missing.
+        InputError: there are no datasets, the folder belongs to somebody else, or matplotlib is
+            missing.
         DatasetError: a dataset is damaged.
     """
     check_matplotlib("foucault atlas")

@@ -2,14 +2,16 @@
 
 So no zero of xdot is lost and none counted twice.
 
-heyoka finds the zeros on the polynomial of each step, but it can lose one within about 2**-prec of the left edge of the
-step, which it tells its log alone. If, for example, xdot is +0.3 mm/s at the start of a step and -0.2 mm/s at its end,
-there is a crossing in between, and if heyoka reports none, it has lost one.
+heyoka finds the zeros on the polynomial of each step, but it can lose one within about 2**-prec of
+the left edge of the step, which it tells its log alone. If, for example, xdot is +0.3 mm/s at the
+start of a step and -0.2 mm/s at its end, there is a crossing in between, and if heyoka reports
+none, it has lost one.
 
-Signs alone do not show everything. If xdot is +0.3 mm/s and falling at the start, and +0.2 mm/s and rising at the end,
-it has a minimum in between. That may be +0.1 mm/s, with no transit, or -0.1 mm/s, with two close together, as happens
-when the swing plane passes through north-south. Two may be lost beside a crossing that was found, too. So the zeros of
-the step's polynomial are counted, as those of any section are (`passages`).
+Signs alone do not show everything. If xdot is +0.3 mm/s and falling at the start, and +0.2 mm/s and
+rising at the end, it has a minimum in between. That may be +0.1 mm/s, with no transit, or -0.1
+mm/s, with two close together, as happens when the swing plane passes through north-south. Two may
+be lost beside a crossing that was found, too. So the zeros of the step's polynomial are counted, as
+those of any section are (`passages`).
 
 So a step is taken again, with its left edge moved, unless
 
@@ -18,8 +20,8 @@ So a step is taken again, with its left edge moved, unless
 
 Many steps are checked in one go, which costs less.
 
-If xdot is zero at the release, that zero at t = 0 is no transit: a first step leaves it out, so short that it holds no
-other.
+If xdot is zero at the release, that zero at t = 0 is no transit: a first step leaves it out, so
+short that it holds no other.
 """
 
 from __future__ import annotations
@@ -70,8 +72,9 @@ class _Step(NamedTuple):
 def _quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     """Return a time δ in s such that xdot has no zero in (0, δ], for a run whose first variable is x over l.
 
-    Let xdot = t^m (b_m + b_{m+1} t + …) with m = `multiplicity`. If |b_m| > Σ |b_k| δ^(k-m), summed over k > m, no
-    other root lies up to δ. The sum is taken over the polynomial, and doubled to cover the terms beyond its order.
+    Let xdot = t^m (b_m + b_{m+1} t + …) with m = `multiplicity`. If |b_m| > Σ |b_k| δ^(k-m), summed
+    over k > m, no other root lies up to δ. The sum is taken over the polynomial, and doubled to
+    cover the terms beyond its order.
 
     Raises:
         IntegrationError: there is no such δ down to the working precision.

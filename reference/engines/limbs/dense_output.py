@@ -80,8 +80,8 @@ def evaluate(to: Array, s: LimbSeries, place: Array, order: int, limb_count: int
 def to_cartesian(to: Array, start: int, step: Step, model: LimbModel, m: int) -> None:
     """Turn all lanes in `rows` to x, y, z, their rates and xddot, in l and the unit of time.
 
-    They are written to seven lanes of `limb_count` rows of `to`, from `start` on. The step is m grains long;
-    the matrix from the Earth's axes to east, north, up is in `model`.
+    They are written to seven lanes of `limb_count` rows of `to`, from `start` on. The step is m
+    grains long; the matrix from the Earth's axes to east, north, up is in `model`.
     """
     total = step.s.total
     state = step.s.partners
@@ -174,7 +174,8 @@ def _divide_rates(step: Step, m: int, limb_count: int) -> None:
 def xdot_of(rows: Array, s: LimbSeries, turn: Array, weight: float, limb_count: int) -> float:
     """Return xdot = Vx + ω m of a state or of all lanes at some place of the step, with the sign that its limbs have.
 
-    `weight` is DOUBLED for the model's `turn` and 1 for a step's, which comes doubled; with this xdot is times h.
+    `weight` is DOUBLED for the model's `turn` and 1 for a step's, which comes doubled; with this
+    xdot is times h.
     """
     for r in range(limb_count):
         s.scalar[r] = rows[LANES * r + VX]

@@ -1,9 +1,10 @@
 """Numbers as limbs of radix 2**22, each an integer in a double: sums and products stay below 2**53, so are exact.
 
-A number is 2 Σ d[q] 2**(-22 (q + 1)) with integer limbs |d[q]| <= 2**21, so with `limb_count` limbs it is an integer
-over 2**(22 limb_count - 1). A product of two limbs is below 2**43, so a sum of a thousand of them is an exact double,
-in any order, fused or not. Only carrying to the last limb rounds. Floating-point expansions need error-free
-transformations instead; here nothing depends on how a compiler arranges additions.
+A number is 2 Σ d[q] 2**(-22 (q + 1)) with integer limbs |d[q]| <= 2**21, so with `limb_count` limbs
+it is an integer over 2**(22 limb_count - 1). A product of two limbs is below 2**43, so a sum of a
+thousand of them is an exact double, in any order, fused or not. Only carrying to the last limb
+rounds. Floating-point expansions need error-free transformations instead; here nothing depends on
+how a compiler arranges additions.
 
 Eight numbers lie side by side: limb q of all of them is one row of eight doubles.
 """

@@ -33,7 +33,8 @@ _SOURCES = [*_LIMBS.glob("*.py"), *_LIMBS.parent.glob("simd/*.py")]
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 # in `MarchState.counts`
 TIME, _LENGTH, _MULTIPLICITY, _SIGN, STEPS, _ROWS, ZEROS, _SCALED, _NEXT = range(9)
-# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot undecided
+# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot
+# undecided
 GOOD, _FULL, STUCK, DOUBTFUL = range(4)
 
 
@@ -42,8 +43,9 @@ class MarchState(NamedTuple):
 
     Attributes:
         now: rows of n, in the axes x, m, w, and of V in the unit of time.
-        counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of xdot; steps;
-            output times passed; zeros written; the step length that `terms` is for; the next step's length.
+        counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of
+            xdot; steps; output times passed; zeros written; the step length that `terms` is for;
+            the next step's length.
         step: the step.
         search: working arrays for a place in it, and for its zeros.
     """
@@ -58,12 +60,14 @@ class Outputs(NamedTuple):
     """Output times, the states at them, and zeros of xdot.
 
     Attributes:
-        whole, remainders: times in whole grains, and the limbs of the remainders, shape (times * limb_count,).
+        whole, remainders: times in whole grains, and the limbs of the remainders, shape (times *
+            limb_count,).
         states: `limb_count` rows per time, as `dense_output.to_cartesian` writes them.
         moments: per zero the step's start and length in grains, and the crossing's sign.
         places: per zero the limbs of its place in the step.
         zero_states: `limb_count` rows per zero.
-        steps: start and length in grains of the first steps of a call, as many as there is room for.
+        steps: start and length in grains of the first steps of a call, as many as there is room
+            for.
         series: the coefficients of as many steps, (order + 1) * `limb_count` rows each.
     """
 

@@ -1,7 +1,8 @@
 """A scene as a problem in limbs: its constants, unit of time, limb count, order, first step and state at release.
 
-The axes are those of the Earth: x east, w along its axis, m = (0, sin, -cos) of the latitude, so that Ω has one
-component and six products a coefficient suffice for all linear terms. Without rotation m is north and w is up.
+The axes are those of the Earth: x east, w along its axis, m = (0, sin, -cos) of the latitude, so
+that Ω has one component and six products a coefficient suffice for all linear terms. Without
+rotation m is north and w is up.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from .series import LinearTerms
 from .size import MOST_PREC, highest_prec, limb_count_for
 from .step import GRAINS, MOST_GRAINS, LimbModel
 
-# a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
+# a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many
+# steps
 _TAIL_BITS = 9
 _ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
 # bits added at most for a swing smaller than l; none are added where there is no swing
@@ -63,8 +65,9 @@ def limb_problem(
 ) -> LimbProblem:
     """Return a scene's problem, in which numbers as large as the swing keep about `prec` bits a step.
 
-    `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps. With
-    `other_steps` the order is lower and the longest step shorter, so that no step is the same in both kinds of run.
+    `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer
+    steps. With `other_steps` the order is lower and the longest step shorter, so that no step is
+    the same in both kinds of run.
     """
     start = _start(inputs)
     prec = _prec_from_l(start, prec)

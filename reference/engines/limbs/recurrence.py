@@ -1,16 +1,19 @@
 """Taylor coefficients of the pendulum's n, V, tension and spin in limbs, by recurrence, order by order.
 
-The formulation is `inertial`, V = n' + Ω × n, in axes of the Earth: w along its axis, x east, m towards the axis' far
-side. Time is in steps (h is in every constant below, and coefficients are multiplied by h**k):
+The formulation is `inertial`, V = n' + Ω × n, in axes of the Earth: w along its axis, x east, m
+towards the axis' far side. Time is in steps (h is in every constant below, and coefficients are
+multiplied by h**k):
 
     n' = V - Ω × n,    V' = c - Ω × V - λ n - γ n',    λ' = 3 c·V - c·(Ω × n) - 2 γ (λ - c·n - ω j),
     j' = c_m x - γ (j - ω (1 - w²)),
 
-where λ = V·V + n·c is the tension of the cord and j = (n × V)_w. All but λ n (and w², with drag) is linear. Coefficient
-k is small as h**k, its leading limbs are zero and are not touched, so that high orders cost little.
+where λ = V·V + n·c is the tension of the cord and j = (n × V)_w. All but λ n (and w², with drag) is
+linear. Coefficient k is small as h**k, its leading limbs are zero and are not touched, so that high
+orders cost little.
 
-The sums of products, λ n and with drag w², are kept for all orders and added to as coefficients become known. The
-products with order 0 are not in the sums: the recurrence needs them at once and adds them itself.
+The sums of products, λ n and with drag w², are kept for all orders and added to as coefficients
+become known. The products with order 0 are not in the sums: the recurrence needs them at once and
+adds them itself.
 """
 
 from __future__ import annotations
@@ -172,8 +175,8 @@ def taylor_coefficients(
 ) -> bool:
     """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
 
-    Of λ n only the products with order 0 are needed at once; an order's other products are added to the sums while the
-    processor waits for the divisions of the next order.
+    Of λ n only the products with order 0 are needed at once; an order's other products are added to
+    the sums while the processor waits for the divisions of the next order.
     """
     _clear_sums(s, order, limb_count, drag)
     if not _note_first_limb(s.c, s.first, 0, 0, limb_count):

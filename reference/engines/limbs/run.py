@@ -1,6 +1,7 @@
 """Run a plan in limbs: states and transits in SI units as a `Run`; for a proof the polynomials of each Taylor step.
 
-Output times are counted in grains, a power of two in s: an integer, and limbs for the remaining part of a grain.
+Output times are counted in grains, a power of two in s: an integer, and limbs for the remaining
+part of a grain.
 """
 
 from __future__ import annotations
@@ -170,7 +171,8 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
 
     Args:
         plan: as for `run`.
-        coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order follows.
+        coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order
+            follows.
     """
     order = round(_ORDER_PER_BIT * coefficient_bits)
     integration = Integration(plan, _POLYNOMIALS_PER_CALL, order)

@@ -14,7 +14,8 @@ from ...numbers.precision import Array
 from ..simd.lanes import LANES, aligned, shuffled
 
 X, M, W, VX, VM, VW, TENSION, SPIN = range(LANES)
-# x, m, w and the tension λ, each limb's coefficients one after another; those of sums are λ x, λ m, λ w, w²
+# x, m, w and the tension λ, each limb's coefficients one after another; those of sums are λ x, λ m,
+# λ w, w²
 PLANES = 4
 WIDTH = 35 * LANES  # from plane to plane, known to the compiler; an odd number of cache lines
 MOST_ORDER = WIDTH - 3 * LANES
@@ -56,7 +57,8 @@ class LimbSeries(NamedTuple):
         planes: limb q of x, m, w, λ, each with all orders in a row.
         used: per limb the number of orders in which it may be other than zero.
         sums: limb r of λ x, λ m, λ w and w², each with all orders in a row, not carried.
-        factors: the limbs of x, m, w, λ of one order, doubled, each repeated in all eight lanes of a row.
+        factors: the limbs of x, m, w, λ of one order, doubled, each repeated in all eight lanes of
+            a row.
         twice: order 0, doubled.
         total, partners, other, scalar: working arrays.
     """

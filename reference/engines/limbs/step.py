@@ -1,7 +1,8 @@
 """The parts of one compiled Taylor step: constants, order 0, step size, sum of the series, projection onto the sphere.
 
-Step lengths are integer multiples m of a grain, a power of two in s; a step of GRAINS grains is the unit of time in
-which velocities are kept between steps. So times are exact, and a change of m costs a multiplication by m.
+Step lengths are integer multiples m of a grain, a power of two in s; a step of GRAINS grains is the
+unit of time in which velocities are kept between steps. So times are exact, and a change of m costs
+a multiplication by m.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ class LimbModel(NamedTuple):
         longest: longest step in grains.
         terms: the linear terms at m = GRAINS, in limb_count + 1 rows, not doubled.
         powers: of m in them, lane by lane: one array of eight for each array of `terms`.
-        along, across: lane by lane the matrix from these axes to east, north, up, for `dense_output.to_cartesian`.
+        along, across: lane by lane the matrix from these axes to east, north, up, for
+            `dense_output.to_cartesian`.
     """
 
     limb_count: int
@@ -142,7 +144,8 @@ def _set_lane(s: LimbSeries, lane: int, limb_count: int) -> None:
 def step_size_factor(s: LimbSeries, order: int, limb_count: int, tolerance: float) -> float:
     """Return the multiple of the step, at most 2, at whose end the last coefficients of n and V reach the tolerance.
 
-    It is estimated from the last two resolved coefficients (Jorba and Zou 2005), assuming geometric decay.
+    It is estimated from the last two resolved coefficients (Jorba and Zou 2005), assuming geometric
+    decay.
     """
     least_size = math.ldexp(_RESOLVED, 1 - LIMB_BITS * limb_count)
     target = _log2(tolerance) / order

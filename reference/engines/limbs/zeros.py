@@ -1,9 +1,9 @@
 """The zeros of xdot on a step: each bracketed in double precision, signs decided in limbs; then refined in limbs.
 
-An interval needs no further cut if the polynomial about its middle cannot vanish on it, is monotone there, or is
-convex or concave (a dip: the close pair near the north-south passage); otherwise it is halved. Where a sign depends on
-the last bits of a double, the limbs decide. The sign at a step's end is that of the next step's start, so that no zero
-at the edge is lost or counted twice.
+An interval needs no further cut if the polynomial about its middle cannot vanish on it, is monotone
+there, or is convex or concave (a dip: the close pair near the north-south passage); otherwise it is
+halved. Where a sign depends on the last bits of a double, the limbs decide. The sign at a step's
+end is that of the next step's start, so that no zero at the edge is lost or counted twice.
 """
 
 from __future__ import annotations
@@ -44,8 +44,10 @@ class Search(NamedTuple):
 
     Attributes:
         f, slope: the coefficients of xdot in double, and those of its derivative.
-        stack: intervals that are still to be examined, the next one on top: their ends, and the signs of xdot there.
-        low, high, guess, direction: per zero its interval, its approximate place and the sign of its crossing.
+        stack: intervals that are still to be examined, the next one on top: their ends, and the
+            signs of xdot there.
+        low, high, guess, direction: per zero its interval, its approximate place and the sign of
+            its crossing.
         number: of zeros so far.
         place: limbs of a place in the step.
     """
@@ -259,7 +261,8 @@ def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
         if not abs(shift) < 1.0:
             return False
         add_double(z.place, shift, limb_count)
-        # where xdot is small against its last limb, rounding ends convergence before the shift is small enough
+        # where xdot is small against its last limb, rounding ends convergence before the shift is
+        # small enough
         has_stalled = abs(shift) > 0.25 * previous and previous < _EDGE
         previous = abs(shift)
         if has_stalled or abs(shift) < enough:

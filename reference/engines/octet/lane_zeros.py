@@ -1,12 +1,14 @@
 """Zeros of a rate on a step, on all lanes at once: each half of it has none or one, then Newton's method.
 
-A half of the step has no zero if the rate at its middle is larger than slope, second derivative and a bound of the
-third can change it. It is monotone, with one zero if the signs at its ends differ, if the slope is larger than the
-higher derivatives can change it. A lane with a half of neither kind, or with two zeros, is in doubt: all its zeros are
-found one by one, by subdivision (`all_zeros`).
+A half of the step has no zero if the rate at its middle is larger than slope, second derivative and
+a bound of the third can change it. It is monotone, with one zero if the signs at its ends differ,
+if the slope is larger than the higher derivatives can change it. A lane with a half of neither
+kind, or with two zeros, is in doubt: all its zeros are found one by one, by subdivision
+(`all_zeros`).
 
-A highest point of the swing is a zero of u'. It is found by the signs at the ends and the middle of a step: half a
-period of u passes between a highest and a lowest point, which is longer than half a step, so that no sign is missed.
+A highest point of the swing is a zero of u'. It is found by the signs at the ends and the middle of
+a step: half a period of u passes between a highest and a lowest point, which is longer than half a
+step, so that no sign is missed.
 """
 
 from __future__ import annotations
@@ -351,7 +353,8 @@ def all_zeros(w: Bisection, z: LaneZeros, polynomial: LanePolynomial, multiplici
         w: where they are written.
         z: the values at the start, whose sign counts, and at the end.
         polynomial: whose zeros.
-        multiplicity: of a zero at the start that is exact; -1 where the start's value alone gives the sign.
+        multiplicity: of a zero at the start that is exact; -1 where the start's value alone gives
+            the sign.
     """
     lane = polynomial.lane
     skipped = max(multiplicity, 0)

@@ -1,6 +1,7 @@
 """The compiled loop of steps: eight rows at a time; a lane whose row is done takes the next one.
 
-A row's transits and highest points are recorded as they are found: how many, the first and the last, the least sharp.
+A row's transits and highest points are recorded as they are found: how many, the first and the
+last, the least sharp.
 """
 
 from __future__ import annotations
@@ -173,7 +174,8 @@ class March(NamedTuple):
     """The lanes: what is carried between steps, and working arrays.
 
     Attributes:
-        state: the present one and the constants of each lane's row, a row of eight for each of `rows`' columns.
+        state: the present one and the constants of each lane's row, a row of eight for each of
+            `rows`' columns.
         series: coefficients.
         transits, highest: the zeros of xdot and of u' on the step.
         bisection: working arrays for all zeros of one lane.
@@ -181,7 +183,8 @@ class March(NamedTuple):
         length: the step's length, in units of time.
         last: above 0 where the step is the row's last one: 1 more than its fate.
         top: x, p and u at the highest points, a row of eight each.
-        counts: the next row, the number of rows that are done, and the row of each lane, -1 for none.
+        counts: the next row, the number of rows that are done, and the row of each lane, -1 for
+            none.
     """
 
     state: Array
@@ -379,7 +382,8 @@ def _end_of_step(m: March, order: int, lane: int, data: RowData) -> None:
 def march(m: March, order: int, form: bool | None, data: RowData, steps: int) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done.
 
-    The transits are the zeros of the rows' forms unless `form` is None: then numba leaves out what has to do with them.
+    The transits are the zeros of the rows' forms unless `form` is None: then numba leaves out what
+    has to do with them.
     """
     row_count = len(data.numbers) // rows.COLUMNS
     room = len(data.moments.row)

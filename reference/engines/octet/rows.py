@@ -50,7 +50,8 @@ APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST = range(13, 18)
 X_FIRST, P_FIRST, X_LAST, P_LAST = range(18, 22)
 # least_bend and least_fall of `Outcomes`, in units of time:
 SMALLEST_BEND, SMALLEST_FALL = range(22, 24)
-# the side of the plumb line that the last one is on, and how many are on the side of the one before:
+# the side of the plumb line that the last one is on, and how many are on the side of the one
+# before:
 SIDE_LAST, SAME_SIDE = range(24, 26)
 RESULTS = 26
 

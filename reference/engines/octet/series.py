@@ -1,14 +1,16 @@
 """The Taylor coefficients of a step, eight rows side by side, its length, and the state at its end.
 
-The formulation is `inertial`, V = n' + Ω × n, in the axes of the plumb line at the pivot: x east, p in the meridian,
-up along -c; n = (x, p, u - 1) and V = (w - Ω_p, v, s), so that a small swing is small in every number. With C = |c|,
+The formulation is `inertial`, V = n' + Ω × n, in the axes of the plumb line at the pivot: x east, p
+in the meridian, up along -c; n = (x, p, u - 1) and V = (w - Ω_p, v, s), so that a small swing is
+small in every number. With C = |c|,
 
     x' = w - Ω_p u + Ω_u p,         w' = Ω_u v - Ω_p s - λ x,
     p' = v - Ω_u x,                 v' = Ω_u (Ω_p - w) - λ p,
     u' = s + Ω_p x,                 s' = λ - C - Ω_p² + Ω_p w - λ u,       λ' = -C (3 s + Ω_p x),
 
-where λ = V·V + n·c is the tension of the cord: only three products of series an order. Each row keeps its unit of time,
-a power of two in s, and the length of a step is a place in its series, so that coefficients are never rescaled.
+where λ = V·V + n·c is the tension of the cord: only three products of series an order. Each row
+keeps its unit of time, a power of two in s, and the length of a step is a place in its series, so
+that coefficients are never rescaled.
 """
 
 from __future__ import annotations
@@ -206,7 +208,8 @@ def _size(c: LaneSeries, k: int) -> Any:
 def step_length(c: LaneSeries, order: int) -> Any:
     """Return how far the series reaches: to where its last two coefficients are TOLERANCE of the motion.
 
-    The height u is left out: the error of its tail is corrected when n is projected onto the sphere.
+    The height u is left out: the error of its tail is corrected when n is projected onto the
+    sphere.
     """
     scale = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE)
     # -log2 of the length by either coefficient, and the larger of the two

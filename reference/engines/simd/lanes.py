@@ -1,12 +1,13 @@
 """How functions are compiled, and SIMD lanes: eight doubles side by side, in any machine's vector registers.
 
-No option allows arithmetic to be rearranged, and the bits are the same with and without FMA, on every machine. In limbs
-sums and products are exact, so it makes no difference whether the compiler fuses them (`plus_product`); in octet each
-is rounded once (`fma`).
+No option allows arithmetic to be rearranged, and the bits are the same with and without FMA, on
+every machine. In limbs sums and products are exact, so it makes no difference whether the compiler
+fuses them (`plus_product`); in octet each is rounded once (`fma`).
 
-numba optimises a function by itself, then again in each of its callers, in their callers and so on. So a large
-function with a single caller is `merged` into it: compiling takes a third less. An array is passed as seven numbers:
-a function that takes many arrays and is called at every step has to be `inlined`, or the call is most of the work.
+numba optimises a function by itself, then again in each of its callers, in their callers and so on.
+So a large function with a single caller is `merged` into it: compiling takes a third less. An array
+is passed as seven numbers: a function that takes many arrays and is called at every step has to be
+`inlined`, or the call is most of the work.
 """
 
 from __future__ import annotations
@@ -243,7 +244,8 @@ def where(builder: Any, truth: Any, a: Any, b: Any) -> Any:
 
 
 _WHOLES = ir.VectorType(ir.IntType(64), LANES)
-# of the bits of a double, read as an integer: the exponent's unit, and what is added to the exponent
+# of the bits of a double, read as an integer: the exponent's unit, and what is added to the
+# exponent
 _SCALE = 2.0**52
 _BIAS = 1023.0
 
@@ -282,7 +284,8 @@ def _binary(operation: Any, name: str) -> None:
     def apply(builder: Any, a: Any, b: Any) -> Any:
         return getattr(builder, name)(a, b)
 
-    # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
+    # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants
+    # no annotations here
     @_extending.overload(operation, jit_options=OPTIONS | {"forceinline": True})
     def choose(a, b):  # type: ignore[no-untyped-def]
         if isinstance(a, _Lanes) and isinstance(b, _Lanes):
