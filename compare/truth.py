@@ -139,7 +139,9 @@ def with_function(scene: Scene) -> Golden | None:
 
 
 def by_function(golden: Golden, times: Array) -> Dense | None:
-    """Return the truth at a candidate's times by the golden function of a dataset; None if they go on beyond its end.
+    """Return the truth at a candidate's times by the golden function of a dataset.
+
+    None if they go on beyond its end.
 
     Its rows, where it has them at these times, are known more closely, and are taken. A last time
     that a program has added up may be a little later: the state there follows from its rates.
@@ -218,7 +220,10 @@ def roughly_solved(
 
 
 def _loaded(folder: Path) -> Golden:
-    """Load a dataset; it is checked and read again only if a file has been touched since this process read it."""
+    """Load a dataset.
+
+    It is checked and read again only if a file has been touched since this process read it.
+    """
     paths = [folder, *sorted(folder.iterdir())] if folder.is_dir() else []
     stats = [path.stat() for path in paths]
     touched = [(stat.st_ino, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns) for stat in stats]
@@ -273,7 +278,10 @@ def _same_problem(scene: Scene, other: Scene) -> bool:
 
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
-    """Return the truth at a candidate's times; it is cached for the next candidate with the same times."""
+    """Return the truth at a candidate's times.
+
+    It is cached for the next candidate with the same times.
+    """
     recipe: Any = hashlib.sha256(_DENSE_FORMAT + (golden.path / "manifest.json").read_bytes())
     recipe.update(np.ascontiguousarray(times).tobytes() + repr(within).encode())
 

@@ -102,7 +102,10 @@ def _path(case: PaperCase, times: Array, items: frozenset[Item]) -> Array:
 
 
 def _without(*items: Item, **fields: Any) -> Motion:
-    """Declare (43) without `items`; where item 1 or its variant is among them, it swings about the vertical."""
+    """Declare (43) without `items`.
+
+    Where item 1 or its variant is among them, it swings about the vertical.
+    """
     names = ", ".join(str(item) for item in items)
     return Motion(
         where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
@@ -114,7 +117,10 @@ def _without(*items: Item, **fields: Any) -> Motion:
 
 
 def slow_down(case: PaperCase) -> Any:
-    """Return 2K/π, the period over the harmonic one; K has the modulus sin(φ0/2), φ0 counted from the rest position."""
+    """Return 2K/π, the period over the harmonic one.
+
+    K has the modulus sin(φ0/2), φ0 counted from the rest position.
+    """
     cosine = dot(case.position, case.rest) / case.length
     return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
 

@@ -26,7 +26,9 @@ _EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
 def candidate_of(
     name: str, arrays: Mapping[str, Array], transits: Array | None = None, made: Layout = _AS_NAMED
 ) -> Candidate:
-    """Make a candidate of named arrays of real numbers, t among them; long doubles keep their digits in `low`.
+    """Make a candidate of named arrays of real numbers, t among them.
+
+    Long doubles keep their digits in `low`.
 
     Args:
         name: of the candidate.

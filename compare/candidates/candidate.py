@@ -204,7 +204,10 @@ def checked_transits(times: Array, name: str) -> Array:
 
 
 def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: bool) -> None:
-    """Refuse times before the release, and times that do not increase; `at` is how a message names a place."""
+    """Refuse times before the release, and times that do not increase.
+
+    `at` is how a message names a place.
+    """
     if len(times) and times[0] < 0:
         count = "Count them from the release, and leave out rows before it."
         raise InputError(name, f"{times[0]:.17g} {at} 1", "times from 0 on, in s", count)

@@ -197,7 +197,9 @@ def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) ->
 
 @contextlib.contextmanager
 def _guarded(mark: str) -> Iterator[Callable[[int], None]]:
-    """Have what bears a mark killed if this process is killed meanwhile; call what this yields with the process group.
+    """Have what bears a mark killed if this process is killed meanwhile.
+
+    Call what this yields with the process group.
 
     Where there is no /proc, only the group is killed; where there is no shell, nothing is.
     """

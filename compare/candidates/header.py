@@ -31,7 +31,9 @@ class HeaderLine(NamedTuple):
 
 @dataclass
 class Header:
-    """The lines above the first row; the header is the last of them that names the columns, a comment or not.
+    """The lines above the first row.
+
+    The header is the last of them that names the columns, a comment or not.
 
     Attributes:
         name: of the text, in messages.
@@ -136,7 +138,9 @@ class Header:
                     raise self._unequal(number, count, line, len(way), "")
 
     def _header(self, least: int, most: int) -> tuple[int, list[str]] | None:
-        """Return the place and the words of the last line that names the columns, or is meant to; None if none does.
+        """Return the place and the words of the last line that names the columns, or is meant to.
+
+        None if none does.
 
         It is no line of units that stands below a header.
 
@@ -212,7 +216,10 @@ class Header:
         return {len(way) for way in self._ways(line) if self._is_complete(way)}
 
     def _ways(self, line: HeaderLine) -> list[list[str]]:
-        """Return the ways to take a line apart; where one names all columns that are needed, no less likely one."""
+        """Return the ways to take a line apart.
+
+        Where one names all columns that are needed, no less likely one.
+        """
         ways = words(line.text)
         separators = [separator for separator in SEPARATORS if separator and separator in line.text]
         explicit = ways[: len(separators)]
@@ -224,7 +231,10 @@ class Header:
         return ways
 
     def _units(self, i: int, count: int) -> list[str] | None:
-        """Return the units in a line that holds nothing else, one for each column; None for another line."""
+        """Return the units in a line that holds nothing else, one for each column.
+
+        None for another line.
+        """
         text = _UNITS_LABEL.sub("", self.lines[i].text, count=1)
         for separator in SEPARATORS:
             fields = split(text, separator)

@@ -186,13 +186,18 @@ def _column(name: str) -> tuple[str, int, int] | None:
 
 
 def _plain_unit(word: str) -> str:
-    """Return the usual word for a unit of time or length: `s` for seconds; other words come back in lower case."""
+    """Return the usual word for a unit of time or length: `s` for seconds.
+
+    Other words come back in lower case.
+    """
     word = word.strip().lower().replace("µ", "u").replace("μ", "u").strip(".")
     return _OTHER_WORDS.get(word, word)
 
 
 def size_of(unit: str, column: str) -> Fraction | None:
-    """Return the size in SI units of a unit of time (of t), length (of x, y, z) or speed; None if it is none of these.
+    """Return the size in SI units of a unit of time (of t), length (of x, y, z) or speed.
+
+    None if it is none of these.
 
     In the column of a speed, `ms` means m/s.
     """
@@ -211,7 +216,9 @@ def size_of(unit: str, column: str) -> Fraction | None:
 
 
 def defaults(words: tuple[str, ...]) -> dict[str, str]:
-    """Return the unit of each column from the words of `--units`, such as ms and cm; a speed is a length per second.
+    """Return the unit of each column from the words of `--units`, such as ms and cm.
+
+    A speed is a length per second.
 
     Raises:
         InputError: a word is no unit of time or length, or there are two of one kind.
@@ -436,7 +443,10 @@ def given(count: int, naming: Naming) -> Layout:
 
 
 def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | None:
-    """Return the layout of a file without a header, by the number of its columns; None if that does not tell it."""
+    """Return the layout of a file without a header, by the number of its columns.
+
+    None if that does not tell it.
+    """
     if len(needed) == 1:
         return layout(["t"], needed, naming, "--columns") if count == 1 else None
     names = _UNNAMED.get(count)

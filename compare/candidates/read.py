@@ -223,7 +223,10 @@ _BINARY_MARKS = (
 
 
 def _binary(data: bytes) -> tuple[str, str] | None:
-    """Return what the first bytes of a file are, and what to do; None if they may be text in UTF-8."""
+    """Return what the first bytes of a file are, and what to do.
+
+    None if they may be text in UTF-8.
+    """
     for mark, kind, advice in _BINARY_MARKS:
         if data.startswith(mark):
             return kind, advice
@@ -454,7 +457,10 @@ class _ColumnReader:
                 raise InputError(where, got[:80], "one way to read it", advice)
 
     def _sure_mark(self, reading: _TextReading) -> str | None:
-        """Return the decimal mark of all numbers if a look at the rows shows it; None if each has to be looked at."""
+        """Return the decimal mark of all numbers if a look at the rows shows it.
+
+        None if each has to be looked at.
+        """
         possible = [mark for mark in ',."' if mark != reading.separator]
         marks = [mark for mark in possible if any(mark in row for row in self.rows)]
         if marks not in ([","], ["."]):
@@ -511,7 +517,9 @@ class _ColumnReader:
         self.rows = [" ".join(map(plain, fields)) for fields in zip(*columns, strict=True)]
 
     def _fields_without_lost_rows(self, reading: _TextReading) -> list[list[str]]:
-        """Return the fields by column; rows without a position are left out, and their lines with them.
+        """Return the fields by column.
+
+        Rows without a position are left out, and their lines with them.
 
         Raises:
             InputError: a field is no number, or no row has a position.
@@ -608,7 +616,10 @@ def _value(field: str) -> str:
 def _low_parts(
     rows: Sequence[str], separator: str | None, places: Sequence[int], table: Array
 ) -> Array:
-    """Return the printed numbers minus their doubles; zeros if a sample of rows holds nothing but doubles."""
+    """Return the printed numbers minus their doubles.
+
+    Zeros if a sample of rows holds nothing but doubles.
+    """
 
     def of_row(row: str, numbers: Array) -> list[float]:
         fields = row.split(separator)
@@ -624,7 +635,9 @@ def _low_parts(
 
 
 def _low_part(text: str, near: float, of_time: bool = False) -> float:
-    """Return the printed number minus `near`, its nearest double; 0 if it may be just that double, printed.
+    """Return the printed number minus `near`, its nearest double.
+
+    0 if it may be just that double, printed.
 
     A time beside numbers more precise than doubles is the decimal itself where it has few digits,
     as 0.1 has.

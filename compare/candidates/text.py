@@ -76,7 +76,10 @@ def _unquoted(field: str) -> str:
 
 
 def split(line: str, separator: str) -> list[str]:
-    """Return the fields of a line; a field in quotes may hold the separator, which is white space if empty."""
+    """Return the fields of a line.
+
+    A field in quotes may hold the separator, which is white space if empty.
+    """
     if line.count('"') % 2:
         line = line.replace('"', "")  # an inch, or a field that goes on in the next line
     if '"' not in line:
@@ -111,7 +114,10 @@ def possible_separators(line: str) -> list[tuple[str, float]]:
 
 
 def words(line: str) -> list[list[str]]:
-    """Return the ways to take a header apart, the most likely first; separators at its end add no word."""
+    """Return the ways to take a header apart, the most likely first.
+
+    Separators at its end add no word.
+    """
     ways = [split(line, separator) for separator in SEPARATORS if separator and separator in line]
     ways += [_APART.split(line.strip()), split(_BEFORE_BRACKET.sub("", line), ""), split(line, "")]
     return [without_end(way) for way in ways]
@@ -126,7 +132,9 @@ def without_end(fields: list[str]) -> list[str]:
 
 
 def doubtful_number(columns: Sequence[Sequence[str]], commas_separate: bool) -> str | None:
-    """Return a number whose mark may be decimal or may separate thousands; None if the numbers decide it.
+    """Return a number whose mark may be decimal or may separate thousands.
+
+    None if the numbers decide it.
 
     A mark is decimal as soon as one number has it where thousands are not separated: in 0,5 or
     12.25, not in 1,250. Where no number shows it, a point is decimal nevertheless, unless commas

@@ -68,7 +68,10 @@ class Judging:
     def program(
         self, program: Runnable, name: str, transits: str | None, repeats: int, experiments: bool
     ) -> Outcome:
-        """Run a program and judge its output; with experiments, run it again if its positions are off."""
+        """Run a program and judge its output.
+
+        With experiments, run it again if its positions are off.
+        """
         outcome = _outcome_of(
             name,
             program.scene.id,

@@ -31,7 +31,9 @@ def file_name(command: str) -> str:
 
 
 def external(command: str, *, name: str = "external") -> Method:
-    """Declare a method that runs a command, whose output is read as a candidate; `name` is its id in tables.
+    """Declare a method that runs a command, whose output is read as a candidate.
+
+    `name` is its id in tables.
 
     It may use the placeholders of `foucault score --run`, and {setting} for the step that a study
     varies. It has to print the scene's grid times; {t_end} and {grid_step} are those of the
@@ -77,7 +79,10 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
 
 
 def _at(problem: Problem, t: Array, columns: dict[str, Array]) -> Array:
-    """Return the states at the problem's times, up to the first missing one; columns not printed are derived."""
+    """Return the states at the problem's times, up to the first missing one.
+
+    Columns not printed are derived.
+    """
     places = np.clip(np.searchsorted(t, problem.times * (1 - SAME_TIME)), 0, len(t) - 1)
     present = np.abs(t[places] - problem.times) <= SAME_TIME * problem.times
     printed = {name: column[places] for name, column in columns.items()}

@@ -119,7 +119,10 @@ def gauss(stages: int) -> tuple[Array, Array, Array]:
 
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
-    """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
+    """Compile the integration at a fixed step of `setting` seconds.
+
+    The returned function runs it.
+    """
     limits = {"stages": stages, "most": MOST_ITERATIONS, "converged": CONVERGED}
     march = problem.compiled(problem.system.program, _MARCH, **limits).march
     coefficients, counts = gauss(stages), steps_between(problem.times, setting)

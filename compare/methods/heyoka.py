@@ -40,7 +40,9 @@ SPARE_BITS = 64  # exact states are written with this many bits below the number
 
 
 def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) -> Work:
-    """Build heyoka's integrator for a problem; the returned function takes the steps and evaluates the dense output.
+    """Build heyoka's integrator for a problem.
+
+    The returned function takes the steps and evaluates the dense output.
 
     Args:
         problem: its scene's exact inputs are used, rounded once to the number type.

@@ -13,7 +13,10 @@ from .rhs.problem import Problem
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Compile the engine's kernels by a short first run; the returned function makes the whole run."""
+    """Compile the engine's kernels by a short first run.
+
+    The returned function makes the whole run.
+    """
     from reference import IntegrationError
     from reference.engines.registry import engines
 

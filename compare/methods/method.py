@@ -38,7 +38,10 @@ TWO_HUNDRED_STEPS = ((None, 1 / 200),)  # the same of one whose step is fixed: s
 
 
 class Family(StrEnum):
-    """A group of methods that share a colour and a panel in reports; its value is the panel's title."""
+    """A group of methods that share a colour and a panel in reports.
+
+    Its value is the panel's title.
+    """
 
     PAPER = "the paper's, fixed step"
     GEOMETRIC = "geometric, fixed step"
@@ -52,7 +55,9 @@ class Family(StrEnum):
 
 @dataclass(frozen=True)
 class RunOutcome:
-    """The result of a run. A numerical failure is an outcome too, with its reason and the states before it.
+    """The result of a run.
+
+    A numerical failure is an outcome too, with its reason and the states before it.
 
     Attributes:
         status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or

@@ -20,7 +20,10 @@ SPARE_BITS = 64  # exact states are written with this many bits below the precis
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Set up contexts of `setting` bits; the returned function computes the series and sums them."""
+    """Set up contexts of `setting` bits.
+
+    The returned function computes the series and sums them.
+    """
     prec = int(setting)
     ctx, model = context(prec), FORMULATIONS[problem.formulation]
     exact = Start.of(problem.scene.exact, prec + GUARD_BITS)

@@ -107,7 +107,10 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
 
 
 def _first_step(problem: Problem) -> float:
-    """Return a first step, a hundredth of the time scale of a small swing, in s; the method adapts it."""
+    """Return a first step, a hundredth of the time scale of a small swing, in s.
+
+    The method adapts it.
+    """
     strength = float(np.linalg.norm(np.array(problem.constants.pull, dtype=float)))
     return min(0.01 / math.sqrt(strength) if strength else 1.0, float(problem.times[-1]) or 1.0)
 

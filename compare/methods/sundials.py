@@ -22,7 +22,10 @@ MOST_STEPS = 100_000_000  # between two output times
 
 
 def prepare(problem: Problem, setting: float, code: str) -> Work:
-    """Compile the right-hand side and create the solver; the returned function calls its `solve`."""
+    """Compile the right-hand side and create the solver.
+
+    The returned function calls its `solve`.
+    """
     from sksundae.cvode import CVODE
 
     rates, slopes, k = problem.rates, problem.slopes, problem.parameters

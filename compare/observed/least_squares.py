@@ -75,7 +75,9 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
 def gauss_newton(
     model: Model, start: Numbers, *, steps: int, gain: float, strays: bool = False
 ) -> tuple[Numbers, float]:
-    """Return the numbers that leave least, and the norm of what they leave; infinity where the first leave no numbers.
+    """Return the numbers that leave least, and the norm of what they leave.
+
+    Infinity where the first leave no numbers.
 
     Args:
         model: returns what numbers leave, and a function that makes the slopes of `best_change`
@@ -185,7 +187,9 @@ def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
 
 
 def power_of_time(t: Array, error: Array, parts: int) -> float | None:
-    """Return the exponent p of error ∝ t^p, fitted to the largest error so far; None if there are too few points.
+    """Return the exponent p of error ∝ t^p, fitted to the largest error so far.
+
+    None if there are too few points.
 
     The arguments are those of `largest_so_far`; errors are above zero.
     """

@@ -94,7 +94,10 @@ class Gauge:
 
 
 def gauge_of(scene: Scene, rest: Vector | None = None) -> Gauge | None:
-    """Return the gauge of a scene's swing plane, as `Gauge.of`; None where nothing swings: there is no plane."""
+    """Return the gauge of a scene's swing plane, as `Gauge.of`.
+
+    None where nothing swings: there is no plane.
+    """
     try:
         return Gauge.of(scene, rest)
     except UnreachableError:

@@ -81,7 +81,10 @@ class Check(ABC):
         """Judge the printed line."""
 
     def judged(self, recomputed: str, verdict: Verdict, **more: str) -> JudgedRow:
-        """Return the row with a verdict and with what belongs to it; the remark is the declared one unless given."""
+        """Return the row with a verdict and with what belongs to it.
+
+        The remark is the declared one unless given.
+        """
         return JudgedRow(
             self.id, self.place, self.printed, recomputed, verdict, **{"remark": self.remark} | more
         )
@@ -253,7 +256,10 @@ class Answer:
 
 @dataclass(frozen=True)
 class Statement(Check):
-    """A sentence, and a computation that can refute it. `by_run`: it rests on a run and not on an identity."""
+    """A sentence, and a computation that can refute it.
+
+    `by_run`: it rests on a run and not on an identity.
+    """
 
     test: Callable[[], Answer]
     correction: str = ""

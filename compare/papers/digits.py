@@ -48,7 +48,10 @@ def vanishes(value: Value) -> bool:
 
 
 def shown(value: Value, digits: int = SHOWN_DIGITS) -> str:
-    """Return a value as text: a number, or components in brackets; "0" if it is zero to all digits compared."""
+    """Return a value as text: a number, or components in brackets.
+
+    "0" if it is zero to all digits compared.
+    """
     numbers = map(MP.mpmathify, parts(value))
     texts = ["0" if abs(x) < ZERO_BELOW else MP.nstr(x, digits).removesuffix(".0") for x in numbers]
     return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"

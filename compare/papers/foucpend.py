@@ -113,7 +113,10 @@ def _texts(rows: Array) -> Iterator[str]:
 
 
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
-    """Yield the snapshots of each block and the transits in it; a block begins where the one before it ends."""
+    """Yield the snapshots of each block and the transits in it.
+
+    A block begins where the one before it ends.
+    """
     method = METHODS[METHOD_OF[options.order]]
     step, transits, first = float(options.step), Transits(), 0
     problem = _problem(options, step)

@@ -16,7 +16,9 @@ TEXTS = texts_of(__file__)
 
 
 def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, str]:
-    """Return every file of the page by name; the page itself comes last, after the figures that it shows.
+    """Return every file of the page by name.
+
+    The page itself comes last, after the figures that it shows.
 
     Args:
         rows: rows of the table.

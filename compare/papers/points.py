@@ -105,7 +105,10 @@ class Point:
 
     @cached_property
     def k(self) -> Constants:
-        """The model's constants at this point, for `reference.model`; they take nothing else of Paris."""
+        """The model's constants at this point, for `reference.model`.
+
+        They take nothing else of Paris.
+        """
         names = ("length", "latitude", "altitude", "gravity", "flattening")
         numbers: dict[str, Any] = {name: to_fraction(getattr(self, name)) for name in names}
         numbers |= {
@@ -185,7 +188,10 @@ def path_in(scene: Scene, times: Array) -> Array:
 def window(
     begin: float, span: float, scene: Scene | None = None, step: float = 0.05
 ) -> tuple[Array, Array]:
-    """Return the times of an interval and the states of a scene there, shape (times, 6); the default is Paris."""
+    """Return the times of an interval and the states of a scene there, shape (times, 6).
+
+    The default is Paris.
+    """
     times: Array = begin + np.arange(round(span / step) + 1) * np.float64(step)
     return times, path_in(scene or load_scene("paris"), np.union1d(0.0, times))[-len(times) :]
 

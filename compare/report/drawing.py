@@ -147,7 +147,10 @@ def line_style(colour: str, place: int) -> dict[str, Any]:
 
 
 def picture(figure: Any, form: str = "svg") -> bytes:
-    """Return the content of a picture file: svg, pdf or png. An svg file follows the reader's light or dark scheme."""
+    """Return the content of a picture file: svg, pdf or png.
+
+    An svg file follows the reader's light or dark scheme.
+    """
     content = _saved(figure, form)
     if form != "svg":
         return content

@@ -23,7 +23,9 @@ _HEAD = 1024  # bytes at the start of a page that hold its mark
 
 @dataclass(frozen=True)
 class Report:
-    """The shape of a report: all that is shown is made from one JSON document; the same document gives the same bytes.
+    """The shape of a report: all that is shown is made from one JSON document.
+
+    The same document gives the same bytes.
 
     Attributes:
         json: name of the document's file.
@@ -41,7 +43,10 @@ class Report:
             check_folder(out, (CSV, self.json, PAGE))
 
     def write(self, document: dict[str, Any], out: Path | None) -> Path | None:
-        """Write the files as `write_files` does, and return the path of the page; `document["rows"]` is the table."""
+        """Write the files as `write_files` does, and return the path of the page.
+
+        `document["rows"]` is the table.
+        """
         if out is None:
             return None
         rows = PageTable.of_records(document["rows"][0], document["rows"]).csv()
@@ -75,7 +80,9 @@ def _is_ours(page: Path) -> bool:
 
 
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
-    """Write files into a folder, each whole or not at all, the page first; other files in it are left alone.
+    """Write files into a folder, each whole or not at all, the page first.
+
+    Other files in it are left alone.
 
     Their checksums come last, in SHA256SUMS, by which `foucault verify` finds what was changed
     since.

@@ -124,7 +124,10 @@ class PicturedMotion:
 
 
 def _gauge(golden: Golden | Solution) -> Gauge | None:
-    """Return the gauge of the swing plane; None if drag is so strong that the bob does not swing."""
+    """Return the gauge of the swing plane.
+
+    None if drag is so strong that the bob does not swing.
+    """
     gauge = gauge_of(golden.scene)
     return gauge if gauge and golden.scene.exact.drag < 2 * gauge.omega else None
 

@@ -79,7 +79,10 @@ def path(axes: Any, motion: PicturedMotion) -> None:
 
 
 def sphere(axes: Any, motion: PicturedMotion) -> None:
-    """Draw the path on its sphere, seen from above and from the south-east; the far side is faint."""
+    """Draw the path on its sphere, seen from above and from the south-east.
+
+    The far side is faint.
+    """
     path_points = _line(motion) if len(motion.line) else motion.rows
     bob = _projected(path_points / motion.length)
     turn = np.linspace(0, 2 * np.pi, 73)
@@ -157,7 +160,10 @@ def panels(motion: PicturedMotion) -> dict[str, Callable[[Any, PicturedMotion], 
 
 
 def motion_picture(motion: PicturedMotion, names: Sequence[str], target: Path) -> bytes:
-    """Return the content of a picture file with panels side by side; the file's name says which form."""
+    """Return the content of a picture file with panels side by side.
+
+    The file's name says which form.
+    """
     drawn = panels(motion)
     with sheet((_PANEL[0] * len(names), _PANEL[1] + 0.3)) as figure:
         for axes, name in zip(np.atleast_1d(figure.subplots(1, len(names))), names, strict=True):

@@ -79,7 +79,10 @@ def facts(pairs: Mapping[str, str]) -> Html:
 
 
 def figure(svg: str, caption: str) -> Html:
-    """Return a picture (`svg` is one SVG element) with its caption; on a narrow screen it scrolls."""
+    """Return a picture (`svg` is one SVG element) with its caption.
+
+    On a narrow screen it scrolls.
+    """
     return Html(
         f'<figure>\n<div class="wide">\n{svg}</div>\n<figcaption>{text(caption)}</figcaption>\n</figure>'
     )
@@ -96,7 +99,10 @@ def plate(svg: str, number: int, printed: str, remark: str) -> Html:
 
 
 def choices(kinds: Mapping[str, str]) -> Html:
-    """Return a check box for each kind of row; page.css hides the rows of a kind whose box is not checked."""
+    """Return a check box for each kind of row.
+
+    `page.css` hides the rows of a kind whose box is not checked.
+    """
     boxes = (
         f'<label><input type="checkbox" id="show-{kind}" checked> {text(label)}</label>'
         for kind, label in kinds.items()

@@ -66,7 +66,10 @@ def rows_of(document: dict[str, Any]) -> list[Row]:
 
 
 def curves(rows: Sequence[Row]) -> list[Curve]:
-    """Group rows by method and formulation, in order of appearance; a method's first formulation is its usual one."""
+    """Group rows by method and formulation, in order of appearance.
+
+    A method's first formulation is its usual one.
+    """
     usual = {row.method: row.formulation for row in reversed(rows)}
     result = []
     by_curve = grouped(rows, lambda row: (row.method, row.formulation))
@@ -82,7 +85,10 @@ def _tightness(row: Row) -> float:
 
 
 def error_of(row: Row, bound_m: float) -> float:
-    """Return the row's largest position error in m, at least the bound of the reference; infinity if it has none."""
+    """Return the row's largest position error in m, at least the bound of the reference.
+
+    Infinity if it has none.
+    """
     return math.inf if row.error_m is None else max(row.error_m, bound_m)
 
 
@@ -112,7 +118,9 @@ def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
 
 
 def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> float | None:
-    """Return the least CPU seconds at which a method reaches an error; None if it does not reach it.
+    """Return the least CPU seconds at which a method reaches an error.
+
+    None if it does not reach it.
 
     The cost is interpolated in logarithms between neighbouring settings on both sides of the error,
     never across a failed setting and never beyond the ladder: if the loosest setting is already

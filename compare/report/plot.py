@@ -155,7 +155,10 @@ def _error_lines(scores: Sequence[Score], lowest_m: float, scale: float) -> list
 
 
 def _smallest_m(scores: Sequence[Score]) -> float:
-    """Return the smallest error in m after t = 0, where candidates are given the right position; 0 if there is none."""
+    """Return the smallest error in m after t = 0, where candidates are given the right position.
+
+    0 if there is none.
+    """
     smallest_m = []
     for score in scores:
         later = score.errors.position[score.errors.t > 0]

@@ -328,7 +328,10 @@ def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
 
 
 def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
-    """Draw error against CPU seconds of one method in several formulations; None if there are none."""
+    """Draw error against CPU seconds of one method in several formulations.
+
+    None if there are none.
+    """
     all_curves = curves(rows)
     compared = {curve.method for curve in all_curves if not curve.usual}
     shown = [curve for curve in all_curves if curve.method in compared]

@@ -139,7 +139,10 @@ def _cells_of(row: Row, on_front: bool) -> dict[str, str]:
 
 
 def failures(rows: Sequence[Row]) -> Html | None:
-    """Return the reasons for which rows failed, rows with the same reason together; None if no row failed."""
+    """Return the reasons for which rows failed, rows with the same reason together.
+
+    None if no row failed.
+    """
     failed = [(curve.label, row) for curve in curves(rows) for row in curve.rows if row.failed]
     if not failed:
         return None

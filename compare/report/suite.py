@@ -68,7 +68,10 @@ def _agreeing(outcomes: Sequence[Outcome]) -> int:
 
 
 def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
-    """Return the least digits of the scenes that agree, rounded down to a tenth; None if none does."""
+    """Return the least digits of the scenes that agree, rounded down to a tenth.
+
+    None if none does.
+    """
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     digits = [score.errors.digits for score in scores if score.agrees]
     if not digits:

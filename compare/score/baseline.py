@@ -85,7 +85,9 @@ def rows_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 
 
 def _row(old: Mapping[str, Any], new: Score) -> Mapping[str, Any] | None:
-    """Return the document of the candidate's problem, of several the one of its name; None if there is none.
+    """Return the document of the candidate's problem, of several the one of its name.
+
+    None if there is none.
 
     Raises:
         InputError: the document is that of one candidate, judged by another problem.
@@ -194,7 +196,10 @@ def _differences(
 def _transit_differences(
     new: Score, old: Score | None, baseline: Mapping[str, Any] | None, end_s: float
 ) -> Iterator[tuple[bool, str]]:
-    """Yield the same of the transits up to a time in s; a document has the largest error of all its transits."""
+    """Yield the same of the transits up to a time in s.
+
+    A document has the largest error of all its transits.
+    """
     if new.transits is None or not baseline:
         return
     now = new.transits.until(end_s).document(0.0)

@@ -72,7 +72,10 @@ def counted_from_release(
 
 
 def _started_elsewhere(times: Array, scene: Scene) -> bool:
-    """Return whether no time is in the scene's span, though all would fit into it; one time alone tells nothing."""
+    """Return whether no time is in the scene's span, though all would fit into it.
+
+    One time alone tells nothing.
+    """
     end = float(scene.exact.t_end + scene.exact.grid_step)
     return bool(len(times) > 1 and times[0] > end and times[-1] - times[0] <= end)
 

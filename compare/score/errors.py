@@ -121,7 +121,10 @@ class TrajectoryErrors:
 
     @property
     def digits(self) -> float:
-        """-log10 of the largest position error over the amplitude; an error below the truth's bound counts as it."""
+        """-log10 of the largest position error over the amplitude.
+
+        An error below the truth's bound counts as it.
+        """
         return -math.log10(max(self.max_m, self.bound_m) / self.amplitude_m)
 
     @property
@@ -175,14 +178,20 @@ class TrajectoryErrors:
 
     @property
     def growth_exponent(self) -> float | None:
-        """Exponent p of error ∝ t^p, fitted to the errors above the truth's bound; None if there are too few rows."""
+        """Exponent p of error ∝ t^p, fitted to the errors above the truth's bound.
+
+        None if there are too few rows.
+        """
         above = (self.t > 0) & (self.position > self.bound_m)
         if above.sum() < 4 or self.t[above][-1] < 4 * self.t[above][0]:
             return None
         return power_of_time(self.t[above], self.position[above], _ENVELOPES)
 
     def swing(self, rest: tuple[float, float]) -> SwingErrors:
-        """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
+        """Fit the turn of the swing plane and the delay.
+
+        `rest` is x, y of the rest position in m.
+        """
         if "x" not in self.components:
             return SwingErrors(*np.empty((2, 0)))
         error = np.column_stack([self.components["x"], self.components["y"]])
@@ -223,7 +232,10 @@ def trajectory_errors(
 
 
 def _components(candidate: Candidate, truth: Dense, later: Array) -> dict[str, Array]:
-    """Return candidate minus truth of each column; `later` is what the truth changes by up to the candidate's times."""
+    """Return candidate minus truth of each column.
+
+    `later` is what the truth changes by up to the candidate's times.
+    """
     components = {}
     for i, name in enumerate(COLUMNS):
         if name in candidate.columns:

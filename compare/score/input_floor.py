@@ -89,7 +89,10 @@ def floor_of_what_ships(scene: Scene, until: float) -> float | None:
 
 
 def _span(t_end: float, until: float) -> float:
-    """Return the scene's span, halved as long as it reaches `until`; `until` itself if that is beyond the span."""
+    """Return the scene's span, halved as long as it reaches `until`.
+
+    `until` itself if that is beyond the span.
+    """
     while t_end / 2 >= until:
         t_end /= 2
     return max(t_end, until)

@@ -149,7 +149,9 @@ def measured(
     tolerance_m: float = 0.0,
     report: Report | None = None,
 ) -> Measured:
-    """Compare a candidate, or passages alone, with ranges; rows at other times than theirs take another proof.
+    """Compare a candidate, or passages alone, with ranges.
+
+    Rows at other times than theirs take another proof.
 
     Args:
         candidate: rows of positions and, if there, velocities.

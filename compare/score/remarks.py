@@ -63,7 +63,10 @@ def scale_beyond_the_cord(candidate: Candidate, scene: Scene, truth: Array) -> D
 
 
 def _scale_of_the_release(candidate: Candidate, scene: Scene) -> float | None:
-    """Return how many times farther the first row is than the release; None if it is no multiple of it."""
+    """Return how many times farther the first row is than the release.
+
+    None if it is no multiple of it.
+    """
     x, y, _ = Start.of(scene.exact, PLACEHOLDER_BITS).position
     release = complex(float(x), float(y))
     if not release or candidate.t[0] != 0:

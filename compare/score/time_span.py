@@ -106,7 +106,10 @@ def _advice(candidate: Candidate, scene: Scene) -> str:
 
 
 def _finer_unit(span: float, end_s: float) -> str | None:
-    """Return the coarsest unit finer than a second in which a span fits into a scene; None if none does."""
+    """Return the coarsest unit finer than a second in which a span fits into a scene.
+
+    None if none does.
+    """
     for unit in FINER:
         if span * float(TIMES[unit]) <= end_s * (1 + SAME):
             return unit

@@ -181,7 +181,10 @@ def transit_errors(
 
 
 def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:
-    """Return, for each transit of the truth, the index of the candidate's transit that matches it; -1 if none does."""
+    """Return, for each transit of the truth, the index of the candidate's transit that matches it.
+
+    -1 if none does.
+    """
     owner = np.full(len(truth), -1)
     if not len(truth) or not len(times):
         return owner

@@ -83,7 +83,10 @@ class Score:
 
     @cached_property
     def input_floor_m(self) -> float:
-        """Distance in m by which rounding the inputs to binary64 moves the bob; computed at the first use."""
+        """Distance in m by which rounding the inputs to binary64 moves the bob.
+
+        Computed at the first use.
+        """
         return input_floor(self.scene, float(self.candidate.t[-1]))
 
     @property
@@ -128,7 +131,10 @@ class Score:
 
     @property
     def allowed_m(self) -> float:
-        """Tolerance in m plus the reference's own bound; nothing is judged more finely than the reference is known."""
+        """Tolerance in m plus the reference's own bound.
+
+        Nothing is judged more finely than the reference is known.
+        """
         return self.tolerance_m + self.errors.bound_m
 
     @property

@@ -32,7 +32,10 @@ _ARCSEC = 180 * 3600 / np.pi
 
 @dataclass(frozen=True)
 class TimeRow:
-    """Largest errors from the release up to time t in s; None where one does not exist: `reason` says why."""
+    """Largest errors from the release up to time t in s.
+
+    None where one does not exist: `reason` says why.
+    """
 
     approximation: str
     t: float

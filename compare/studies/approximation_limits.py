@@ -129,7 +129,10 @@ def _time_limits(scene: Scene, chosen: Iterable[Motion], t_end: float) -> list[L
 def _below(
     over: str, values: Sequence[float], errors: Sequence[float | None], limit: float
 ) -> tuple[tuple[float, float], ...]:
-    """Return the intervals of `values` with errors up to the limit; their ends are interpolated in log(error)."""
+    """Return the intervals of `values` with errors up to the limit.
+
+    Their ends are interpolated in log(error).
+    """
     scale, back = (float, float) if over == "latitude" else (np.log, np.exp)
     inside = [error is not None and error <= limit for error in errors]
 

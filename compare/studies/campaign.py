@@ -153,7 +153,10 @@ def _mark(recipe: Any) -> str:
 def _stored(
     path: Path | None, kind: type[Any]
 ) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Any]]:
-    """Yield marks with items, and results, in order; a line that is no result of this kind, or damaged, is skipped."""
+    """Yield marks with items, and results, in order.
+
+    A line that is no result of this kind, or damaged, is skipped.
+    """
     if path is None or not path.exists():
         return
     types = TypeAdapter(kind)
@@ -181,7 +184,10 @@ def _store(path: Path | None, record: dict[str, Any]) -> None:
 def _isolated(
     measurement: Measurement[Item, Result], items: Sequence[Item]
 ) -> Generator[Result, None, None]:
-    """Yield the result of each item; after a hang or a crash a new process goes on with the next one."""
+    """Yield the result of each item.
+
+    After a hang or a crash a new process goes on with the next one.
+    """
     remaining = list(items)
     while remaining:
         env = {
@@ -230,7 +236,9 @@ def machine() -> dict[str, str]:
 
 
 def load_per_core() -> float | None:
-    """Return how many processes wanted to run in the last minute, over the cores; None where the system does not tell.
+    """Return how many processes wanted to run in the last minute, over the cores.
+
+    None where the system does not tell.
 
     One process that has a core for itself is 1 over the number of cores.
     """

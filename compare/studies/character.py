@@ -149,7 +149,10 @@ def reason_of(
     requested: float,
     limit_s: float,
 ) -> str:
-    """Return the causes that the numbers point to, the strongest first; empty if the run is right."""
+    """Return the causes that the numbers point to, the strongest first.
+
+    Empty if the run is right.
+    """
     if status == Status.OK:
         return ""
     if status in (Status.NOT_INSTALLED, Status.REFUSED):

@@ -63,7 +63,10 @@ class LongRun:
 
     @property
     def exponent(self) -> float | None:
-        """The exponent p of error ∝ t^p, fitted to the largest error so far; None if too few errors were measured."""
+        """The exponent p of error ∝ t^p, fitted to the largest error so far.
+
+        None if too few errors were measured.
+        """
         if not self.t:
             return None
         t = np.array(self.t)

@@ -178,7 +178,10 @@ class GridTruth:
 
 
 def h_drift(scene: Scene, outcome: RunOutcome) -> float | None:
-    """Return the drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
+    """Return the drift of h over the largest kinetic energy, in the precision of the outcome.
+
+    None with drag.
+    """
     if scene.exact.drag:
         return None
     # 27 bits beyond a double, or 64 beyond an exact state: h is a small difference of large terms

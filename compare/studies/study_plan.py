@@ -101,7 +101,10 @@ def _runs(
     expected: str,
     these: str,
 ) -> dict[str, Sequence[Any]]:
-    """Return what each method declares; refuse one that declares nothing, and name those that do."""
+    """Return what each method declares.
+
+    Refuse one that declares nothing, and name those that do.
+    """
     _check_usable(methods)
     runs = {name: runs_of(METHODS[name]) for name in methods or METHODS}
     without = [name for name in methods or () if not runs[name]]

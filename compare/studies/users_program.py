@@ -60,7 +60,9 @@ class ProgramRun:
 def measured(
     program: ProgramRun, scene: Scene, golden: Golden, wrong_m: float
 ) -> tuple[Row, float | None]:
-    """Run a program on a scene; return its row, and the first time in s at which it is wrong, None if it never is.
+    """Run a program on a scene.
+
+    Return its row, and the first time in s at which it is wrong, None if it never is.
 
     A failure of any kind becomes the row's status and reason.
 
@@ -86,7 +88,9 @@ def measured(
 def files_of(
     paths: Sequence[str], cpu: str | None, taken: Collection[str]
 ) -> dict[str, tuple[Candidate, float | None]]:
-    """Read files of somebody's output; return each, with the CPU seconds that are stated, by the name of its row.
+    """Read files of somebody's output.
+
+    Return each, with the CPU seconds that are stated, by the name of its row.
 
     Args:
         paths: of the files; the name of a row is that of its file, shortened.

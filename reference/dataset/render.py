@@ -244,7 +244,10 @@ class StateVector(ManifestPart):
 
 
 class TransitVector(ManifestPart):
-    """A zero of xdot; `k` is its number in `transits.csv`, and the direction is +1 where xdot goes from - to +."""
+    """A zero of xdot.
+
+    `k` is its number in `transits.csv`, and the direction is +1 where xdot goes from - to +.
+    """
 
     k: int
     direction: int

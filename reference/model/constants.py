@@ -68,7 +68,10 @@ class Constants:
 
     @classmethod
     def of(cls, entries: Mapping[str, Any]) -> Self:
-        """Return the constants that have these `entries`, in any number type; those not named are exactly zero."""
+        """Return the constants that have these `entries`, in any number type.
+
+        Those not named are exactly zero.
+        """
 
         def value(name: str, default: Any) -> Any:
             if isinstance(default, tuple):

@@ -31,7 +31,10 @@ def force(n: Vector, v: Vector, k: Constants) -> Vector:
 
 
 def tension(n: Vector, v: Vector, k: Constants) -> Any:
-    """Return the tension of the cord per mass over l, v·v + n·F, in 1/s²; where it is negative a rod is pushed."""
+    """Return the tension of the cord per mass over l, v·v + n·F, in 1/s².
+
+    Where it is negative a rod is pushed.
+    """
     return plus(dot(v, v), dot(n, force(n, v, k)))
 
 

@@ -50,7 +50,10 @@ def form_of(word: str, start: Start) -> Form:
 
 
 def gate_without_rest(word: str, reason: str) -> InputError:
-    """Return the error of a gate through a rest position that does not exist, or is not known; `reason` says why."""
+    """Return the error of a gate through a rest position that does not exist, or is not known.
+
+    `reason` says why.
+    """
     expected = f"a section that needs no rest position: {reason}"
     advice = (
         f"Write {word}@0 for the plane through the suspension's vertical, or leave this gate out."

@@ -84,7 +84,10 @@ class Start:
 
     @cached_property
     def lean(self) -> Any:
-        """Sine of the angle between the rest position and the plumb line at the pivot; raises as `rest` does."""
+        """Sine of the angle between the rest position and the plumb line at the pivot.
+
+        Raises as `rest` does.
+        """
         return self.ctx.norm(cross(self.rest, self.k.pull)) / self.ctx.norm(self.k.pull)
 
     def state(self, formulation: Formulation) -> Sequence[Any]:

@@ -28,7 +28,10 @@ SECTION_WORD = f"highest|lowest|turn {_AZIMUTH}|gate {_AZIMUTH}(?:@0)?"  # as a 
 
 
 def _section_words(value: Any) -> Any:
-    """Return words from a list, or from a text with semicolons or commas between them; each has single spaces."""
+    """Return words from a list, or from a text with semicolons or commas between them.
+
+    Each has single spaces.
+    """
     listed = re.split("[;,]", value) if isinstance(value, str) else value
     if listed is None:
         return None

@@ -89,5 +89,8 @@ def as_read(text: str, reading: str) -> Fraction:
 
 
 def azimuth_of(word: str) -> Fraction:
-    """Return the azimuth that a section's word names, in degrees from east to north; 0 if it names none."""
+    """Return the azimuth that a section's word names, in degrees from east to north.
+
+    0 if it names none.
+    """
     return Fraction(word.partition(" ")[2].removesuffix("@0") or 0)

@@ -111,7 +111,10 @@ Words = str | Iterable[str] | Mapping[str, Any]
 
 
 def words_of(values: Words) -> list[str]:
-    """Return values of fields as words `key=value`; a list, range or array is written as values between commas."""
+    """Return values of fields as words `key=value`.
+
+    A list, range or array is written as values between commas.
+    """
     if isinstance(values, Mapping):
         return [f"{key}={_word(str(key), value)}" for key, value in values.items()]
     return [*map(str, values)] if _is_listed(values) else [str(values)]
@@ -188,7 +191,10 @@ def _short_names() -> dict[str, str]:
 
 
 def full_name(word: str) -> str:
-    """Return the name of a field as `section.key` from that name or a short one; other words come back as they are."""
+    """Return the name of a field as `section.key` from that name or a short one.
+
+    Other words come back as they are.
+    """
     return _short_names().get(word.strip(), word.strip())
 
 

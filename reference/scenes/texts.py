@@ -34,7 +34,10 @@ _DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?0*(\d+))?", re.ASCII)
 
 
 class Refused(ValueError):
-    """Raised by a validator with its expectation and advice; becomes an `InputError` with the field's name."""
+    """Raised by a validator with its expectation and advice.
+
+    It becomes an `InputError` with the field's name.
+    """
 
     def __init__(self, expected: str, advice: str = "") -> None:
         super().__init__(expected)

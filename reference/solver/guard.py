@@ -181,7 +181,10 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
 def _gap_of_the_next(
     candidates: Iterator[tuple[Any, int, int]], t: Any, bound: int, direction: int
 ) -> int | None:
-    """Return the distance of an enclosed zero from the next candidate that may be it; None if there is none."""
+    """Return the distance of an enclosed zero from the next candidate that may be it.
+
+    None if there is none.
+    """
     for time, error, sign in candidates:
         gap = abs(t - time)
         if sign == direction and gap <= bound + error:

@@ -46,7 +46,9 @@ class TracingError(TypeError):
 
 
 class TracedNumber:
-    """A number that records the operations on it; it has no value, so that nothing may branch on it.
+    """A number that records the operations on it.
+
+    It has no value, so that nothing may branch on it.
 
     An exact zero, and factors of one and minus one, need no operation; no bit of the result depends
     on that.
@@ -138,7 +140,10 @@ class Tape:
 
 
 def _is(value: Any, number: int) -> bool:
-    """Return True for an exact int or Fraction; the double 0.0 is not exact, because its sign and a NaN matter."""
+    """Return True for an exact int or Fraction.
+
+    The double 0.0 is not exact, because its sign and a NaN matter.
+    """
     return isinstance(value, int | Fraction) and value == number
 
 

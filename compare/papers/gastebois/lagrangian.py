@@ -188,7 +188,10 @@ def _flat_solved(p: Point) -> Vector:
 
 
 def _flat_middle(p: Point, sign: int) -> Vector:
-    """Return x'' and y'' of 7.3, middle lines: the first with θ'', φ'' put in; `sign` is that of the group of φ''."""
+    """Return x'' and y'' of 7.3, middle lines: the first with θ'', φ'' put in.
+
+    `sign` is that of the group of φ''.
+    """
     second, turned = small_accelerations(p)
     return _flat_printed(_accelerated(p, (second, sign * turned)))
 

@@ -192,7 +192,10 @@ def _script(*names: str, kind: str = "page") -> Html:
 
 @cache
 def source(name: str) -> str:
-    """Return a style, a script or a part of a page; of the program in docs/readers the function that evaluates."""
+    """Return a style, a script or a part of a page.
+
+    Of the program in docs/readers it is the function that evaluates.
+    """
     if name == _EVALUATOR:
         folder = data_root().parent / "docs" / "readers" if in_checkout() else files(__package__)
         program = folder.joinpath(name).read_text(encoding="utf-8")

@@ -166,7 +166,10 @@ def _cpu(seconds: float | None) -> str:
 
 
 def golden_function(golden: Golden) -> dict[str, Any] | None:
-    """Return what `evaluator` in docs/readers/function.mjs needs of the golden function; None if there is none."""
+    """Return what `evaluator` in docs/readers/function.mjs needs of the golden function.
+
+    None if there is none.
+    """
     if golden.function is None:
         return None
     record, numbers = (golden.path.joinpath(name).read_bytes() for name in FUNCTION)

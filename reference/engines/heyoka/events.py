@@ -96,7 +96,9 @@ def march(
     multiplicity: int = 0,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Any, list[Zero]]:
-    """Step to the last of `times`; return the states, shape (times, variables), and the zeros of xdot.
+    """Step to the last of `times`.
+
+    Return the states, shape (times, variables), and the zeros of xdot.
 
     Args:
         stepper: at t = 0, with events.
@@ -145,7 +147,10 @@ def march(
 
 
 def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int, str] | None:
-    """Return the first of consecutive steps whose zeros fail a guard, as its index, and how; None if none does."""
+    """Return the first of consecutive steps whose zeros fail a guard, as its index, and how.
+
+    None if none does.
+    """
     x = np.array([step.series[1:] for step in steps])
     x *= np.cumprod(np.broadcast_to([[step.length] for step in steps], x.shape), axis=1)
     k = np.arange(1, x.shape[1] + 1)
@@ -174,7 +179,10 @@ def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int,
 
 
 def _counted(xdot: Any, numbers: Numbers, left: float, right: float) -> int | None:
-    """Return how many zeros a polynomial has between 0 and 1, given its signs there; None if they are too close."""
+    """Return how many zeros a polynomial has between 0 and 1, given its signs there.
+
+    None if they are too close.
+    """
     bits = numbers.number.prec + SPARE_BITS
     places = Places(numbers.fixed(xdot / max(map(abs, xdot)), bits), 0, bits, "xdot")
     try:

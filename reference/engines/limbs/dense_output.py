@@ -122,7 +122,10 @@ def _set_rates(step: Step, limb_count: int) -> None:
 
 @merged
 def _set_xddot(step: Step, model: LimbModel) -> None:
-    """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm; the rates are in `partners`."""
+    """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm.
+
+    The rates are in `partners`.
+    """
     s = step.s
     total = s.total
     rate = s.partners
@@ -190,7 +193,10 @@ def xdot_of(rows: Array, s: LimbSeries, turn: Array, weight: float, limb_count: 
 
 @compiled
 def xdot_at(place: Array, step: Step, model: LimbModel) -> float:
-    """Return xdot times h at a place of the step, with the sign that its limbs have; write all lanes to `rows`."""
+    """Return xdot times h at a place of the step, with the sign that its limbs have.
+
+    Write all lanes to `rows`.
+    """
     evaluate(step.rows, step.s, place, model.order, model.limb_count)
     return xdot_of(step.rows, step.s, step.terms.turn, 1.0, model.limb_count)
 

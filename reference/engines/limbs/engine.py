@@ -14,7 +14,10 @@ _STEP_S = 1.2e-5
 
 
 class Limbs(Engine):
-    """Taylor series of fixed order and adaptive step in compiled multiprecision; numba is imported when it runs."""
+    """Taylor series of fixed order and adaptive step in compiled multiprecision.
+
+    Numba is imported when it runs.
+    """
 
     name = "limbs"
     formulation = "inertial"

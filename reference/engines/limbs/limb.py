@@ -77,7 +77,10 @@ def carry(rows: Array, first: int, last: int) -> None:
 
 @inlined
 def divide(rows: Array, first: int, last: int, divisor: float) -> None:
-    """Divide by an integer below 2**20, from row `first` downwards, and carry; the remainder at `last` is dropped."""
+    """Divide by an integer below 2**20, from row `first` downwards, and carry.
+
+    The remainder at `last` is dropped.
+    """
     radix = spread(RADIX)
     by = spread(divisor)
     inverse = spread(1.0 / divisor)
@@ -101,7 +104,10 @@ def carry_scalar(limbs: Array, last: int) -> None:
 
 @compiled
 def add_product(to: Array, a: Array, b: Array, start: int, limb_count: int) -> None:
-    """Add a b in each lane to rows 0 … limb_count of `to`; a comes doubled, limbs of b before `start` are zero."""
+    """Add a b in each lane to rows 0 … limb_count of `to`.
+
+    `a` comes doubled. Limbs of b before `start` are zero.
+    """
     for r in range(start + 1, limb_count + 1):
         total = get_row(to, r)
         for q in range(start, r):

@@ -156,7 +156,10 @@ def _write_series(state: MarchState, model: LimbModel, out: Outputs, i: int) -> 
 def march(
     state: MarchState, model: LimbModel, out: Outputs, until: int, steps: int, seek: bool
 ) -> int:
-    """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
+    """Take at most `steps` steps, until the time in grains is `until` or later.
+
+    Return why it stopped.
+    """
     s = state.step.s
     counts = state.counts
     limb_count = model.limb_count
@@ -187,7 +190,10 @@ def march(
 
 @merged
 def _step_coefficients(state: MarchState, model: LimbModel) -> bool:
-    """Compute the coefficients of the next step, shortened until they decay enough; false if no length will do."""
+    """Compute the coefficients of the next step, shortened until they decay enough.
+
+    False if no length will do.
+    """
     counts = state.counts
     s = state.step.s
     terms = state.step.terms

@@ -173,7 +173,9 @@ def _copy_to_planes(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
 def taylor_coefficients(
     s: LimbSeries, terms: LinearTerms, order: int, limb_count: int, drag: bool
 ) -> bool:
-    """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
+    """Fill the coefficients from those of order 0.
+
+    Return false if one is too large for exact arithmetic.
 
     Of λ n only the products with order 0 are needed at once; an order's other products are added to
     the sums while the processor waits for the divisions of the next order.
@@ -208,7 +210,10 @@ def taylor_coefficients(
 
 @inlined
 def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int) -> bool:
-    """Write the first limb of order k that is not zero, from `low` on; return false if a number is too large."""
+    """Write the first limb of order k that is not zero, from `low` on.
+
+    Return false if a number is too large.
+    """
     block = k * limb_count
     first = low
     while first < limb_count and not occupied(get_row(c, block + first)):

@@ -167,7 +167,9 @@ def _empty_outputs(
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
-    """Yield the Taylor steps of a run in order from t = 0, up to one beyond the last time; return its `Run`.
+    """Yield the Taylor steps of a run in order from t = 0, up to one beyond the last time.
+
+    Return its `Run`.
 
     Args:
         plan: as for `run`.
@@ -201,7 +203,9 @@ def _digits(series: Array, limb_count: int) -> Digits:
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
-    """Integrate a plan in limbs, in `inertial` whatever its formulation; `plan.number` has the precision.
+    """Integrate a plan in limbs, in `inertial` whatever its formulation.
+
+    `plan.number` has the precision.
 
     Args:
         plan: what to run; times increasing from 0 on.
@@ -219,7 +223,10 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
 
 
 def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
-    """Return what an integration computed, in SI units; `cpu_start` is `time.process_time()` when its steps began."""
+    """Return what an integration computed, in SI units.
+
+    `cpu_start` is `time.process_time()` when its steps began.
+    """
     problem = integration.problem
     bits = fraction_bits(problem.model.limb_count)
     factors = [plan.inputs.length / problem.unit ** (i // 3) for i in range(COLUMNS)]

@@ -80,7 +80,10 @@ def scale_terms(to: LinearTerms, model: LimbModel, m: int) -> None:
 
 @compiled
 def _multiply(rows: Array, powers: Array, power: int, m: int, limb_count: int) -> None:
-    """Multiply the lanes that hold at least this power of m by m / GRAINS; the others stay as they are."""
+    """Multiply the lanes that hold at least this power of m by m / GRAINS.
+
+    The others stay as they are.
+    """
     has_power = at_least(get_row(powers, 0), spread(power - 0.5))
     factor = spread(_SHIFT * GRAINS) + has_power * spread(_SHIFT * (m - GRAINS))
     for r in range(limb_count, -1, -1):
@@ -165,7 +168,10 @@ def step_size_factor(s: LimbSeries, order: int, limb_count: int, tolerance: floa
 
 @compiled
 def _log2(x: float) -> float:
-    """Return log2(x) of a positive number, to some units in the last place; libm's differs from CPU to CPU."""
+    """Return log2(x) of a positive number, to some units in the last place.
+
+    Libm's differs from CPU to CPU.
+    """
     fraction, exponent = math.frexp(x)
     y = (fraction - _ROOT_HALF) / (fraction + _ROOT_HALF)
     square = y * y

@@ -249,7 +249,10 @@ def _bottom_in_limbs(z: Search, flat: float, bend: float, step: Step, model: Lim
 
 @compiled
 def polish(z: Search, i: int, step: Step, model: LimbModel) -> bool:
-    """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval."""
+    """Write the place of zero i to `place`, all lanes there to `rows`.
+
+    False if Newton's method leaves its interval.
+    """
     limb_count = model.limb_count
     enough = 2.0 ** min(_DERIVATIVE_BITS - (LIMB_BITS * limb_count - 1), -_NEAR_BITS)
     previous = 1.0

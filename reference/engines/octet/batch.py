@@ -73,7 +73,10 @@ class OctetBatch(Batch):
         return outcomes(rows, numbers, results, found)
 
     def compiling_s(self, sections: bool) -> float:
-        """Return what compiling takes here; the variant for sections is kept beside that of all rows."""
+        """Return what compiling takes here.
+
+        The variant for sections is kept beside that of all rows.
+        """
         missing = 1 + sections - kept_variants("march", folder_of(SOURCES))
         return sum(self.compile_s[: max(missing, 0)])
 

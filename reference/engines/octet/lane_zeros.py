@@ -110,7 +110,10 @@ class _Halves(NamedTuple):
 
 @compiled
 def seek(z: LaneZeros, f: Array, length: Array, time: Array, order: int) -> None:
-    """Find which lanes have one zero of the polynomial f on the step, and about where; at time 0 all are in doubt."""
+    """Find which lanes have one zero of the polynomial f on the step, and about where.
+
+    At time 0 all are in doubt.
+    """
     # many names, as each is a quantity of one formula in each lane
     h = get_row(length, 0)
     zero = spread(0.0)
@@ -205,7 +208,10 @@ class _Crossings(NamedTuple):
 
 @inlined
 def _keep(z: LaneZeros, h: Any, crossings: _Crossings) -> tuple[Any, Any]:
-    """Write which lanes of steps of length h have a zero, and which are in doubt; return the half that holds it."""
+    """Write which lanes of steps of length h have a zero, and which are in doubt.
+
+    Return the half that holds it.
+    """
     sought = get_row(z.sought, 0)
     middle = h * spread(0.5)
     low = where(crossings.late, middle, spread(0.0))
@@ -248,7 +254,10 @@ def refine(z: LaneZeros, f: Array, length: Array, order: int, converged: float) 
 
 @inlined
 def _value_and_slope(f: Array, place: Any, order: int) -> tuple[Any, Any]:
-    """Return the polynomial f and its derivative at a place of each lane; `order`, the number of terms, is even."""
+    """Return the polynomial f and its derivative at a place of each lane.
+
+    `order`, the number of terms, is even.
+    """
     # even and odd powers are summed separately: this halves the chain of dependent operations
     even = spread(0.0)
     even_slope = spread(0.0)
@@ -268,7 +277,10 @@ def _value_and_slope(f: Array, place: Any, order: int) -> tuple[Any, Any]:
 
 @compiled
 def seek_highest(z: LaneZeros, g: Array, length: Array, order: int) -> None:
-    """Find which lanes have a highest point on the step; `doubt` is where a sign is lost in rounding."""
+    """Find which lanes have a highest point on the step.
+
+    `doubt` is where a sign is lost in rounding.
+    """
     # many names, as each is a quantity of one formula in each lane
     h = get_row(length, 0)
     zero = spread(0.0)
@@ -375,7 +387,10 @@ def all_zeros(w: Bisection, z: LaneZeros, polynomial: LanePolynomial, multiplici
 
 @compiled
 def _copy_polynomial(w: Bisection, polynomial: LanePolynomial, skipped: int) -> float:
-    """Copy the coefficients of one lane from order `skipped` on; return the noise of the polynomial's values."""
+    """Copy the coefficients of one lane from order `skipped` on.
+
+    Return the noise of the polynomial's values.
+    """
     total = 0.0
     for k in range(polynomial.order - skipped - 1, -1, -1):
         w.f[k] = polynomial.f[LANES * (k + skipped) + polynomial.lane]
@@ -394,7 +409,10 @@ class _LaneInterval(NamedTuple):
 
 @compiled
 def _isolate(w: Bisection, size: int, noise: float, whole: _LaneInterval) -> int:
-    """Write the zeros of the polynomial `w.f` of `size` coefficients, in order; return their number, or DOUBT."""
+    """Write the zeros of the polynomial `w.f` of `size` coefficients, in order.
+
+    Return their number, or DOUBT.
+    """
     # the stack holds upper ends of intervals, and the values there: the next interval's on top
     w.stack[0] = whole.high
     w.stack[1] = whole.after

@@ -98,7 +98,10 @@ class RowData(NamedTuple):
 
 @compiled
 def _record_transit(data: RowData, row: int, time_s: float, slope: float, close_s: float) -> None:
-    """Record a transit of a row; one that comes less than `close_s` after the one before makes a close pair."""
+    """Record a transit of a row.
+
+    One that comes less than `close_s` after the one before makes a close pair.
+    """
     out = data.results
     at = row * rows.RESULTS
     if out[at + rows.COUNT] == 0.0:
@@ -139,7 +142,10 @@ class _HighestPoint(NamedTuple):
 
 @compiled
 def _record_highest(data: RowData, row: int, point: _HighestPoint) -> None:
-    """Record a highest point; half turns are counted where the direction, up to a half turn, passes east."""
+    """Record a highest point.
+
+    Half turns are counted where the direction, up to a half turn, passes east.
+    """
     out = data.results
     at = row * rows.RESULTS
     # the direction up to a half turn: that of (x, p) or of its opposite, with p >= 0
@@ -343,7 +349,10 @@ def _record_transits(m: March, order: int, lane: int, data: RowData) -> bool:
 
 @inlined
 def _record_highest_point(m: March, lane: int, data: RowData) -> bool:
-    """Record the highest point on a lane's step, if there is one; return false if this stays in doubt."""
+    """Record the highest point on a lane's step, if there is one.
+
+    Return false if this stays in doubt.
+    """
     row = m.counts[_ROW + lane]
     pull = m.state[LANES * rows.PULL + lane]
     if m.highest.doubt[lane] != 0.0:
@@ -380,7 +389,9 @@ def _end_of_step(m: March, order: int, lane: int, data: RowData) -> None:
 
 @kept(*rows.SOURCES, nogil=True, **OPTIONS)
 def march(m: March, order: int, form: bool | None, data: RowData, steps: int) -> bool:
-    """Take at most `steps` steps, or until no room is left for times; return whether all rows are done.
+    """Take at most `steps` steps, or until no room is left for times.
+
+    Return whether all rows are done.
 
     The transits are the zeros of the rows' forms unless `form` is None: then numba leaves out what
     has to do with them.

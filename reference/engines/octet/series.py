@@ -101,7 +101,10 @@ def _dot(a: Vector, b: Vector) -> Any:
 
 @inlined
 def _next_order(c: LaneSeries, state: Array, k: int, pulled: Vector) -> None:
-    """Write the coefficients of order k + 1 from those of order k; `pulled` is order k of λ x, λ p and λ u."""
+    """Write the coefficients of order k + 1 from those of order k.
+
+    `pulled` is order k of λ x, λ p and λ u.
+    """
     # one name for each symbol of the formulas above, one statement for each formula;
     # the last term of the chain of dependent operations is added last
     zero = spread(0.0)

@@ -267,7 +267,10 @@ def exp2_of(builder: Any, a: Any) -> Any:
 
 
 def shuffled(order: tuple[int, ...], name: str) -> Any:
-    """Return a compiled function that takes lane order[i] to lane i; lane i becomes 0 where order[i] is negative."""
+    """Return a compiled function that takes lane order[i] to lane i.
+
+    Lane i becomes 0 where order[i] is negative.
+    """
     places = ir.Constant(
         ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order]
     )
