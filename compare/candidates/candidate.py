@@ -14,7 +14,7 @@ from reference.errors import counted
 from reference.numbers.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
-_LARGEST = 1e100  # a larger number means that the run has blown up; below, squares cannot overflow
+LARGEST = 1e100  # a larger number means that the run has blown up; below, squares cannot overflow
 ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 
@@ -167,11 +167,11 @@ def _check_finite(name: str, columns: dict[str, Array], rows: npt.NDArray[np.boo
         NotFiniteError: there is one.
     """
     for word, column in columns.items():
-        invalid = ~(np.abs(column) <= _LARGEST) & rows  # true for NaN as well
+        invalid = ~(np.abs(column) <= LARGEST) & rows  # true for NaN as well
         if invalid.any():
             row = int(np.argmax(invalid))
             got = f"{column[row]} in row {row + 1}"
-            expected = f"a finite number below {_LARGEST:g} in size"
+            expected = f"a finite number below {LARGEST:g} in size"
             advice = "The run failed there: score the rows before it, or correct it."
             raise NotFiniteError(f"{name}: {word}", got, expected, advice)
 

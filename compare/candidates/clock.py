@@ -11,8 +11,8 @@ from reference import InputError
 
 from .text import CLOCK, MOMENT
 
-_DAY_S = 86400
-_UNIX = (1_000_000_000, 4_000_000_000)  # seconds since 1970 of the years 2001 to 2096
+DAY_S = 86400
+UNIX = (1_000_000_000, 4_000_000_000)  # seconds since 1970 of the years 2001 to 2096
 HOW = "Write seconds since the release, or hours:minutes:seconds."
 
 
@@ -51,7 +51,7 @@ def _since_1970(moment: re.Match[str], where: str) -> Fraction:
         zone_s = (int(zone_hours) * 60 + int(zone_minutes)) * 60
     if sign == "-":
         zone_s = -zone_s
-    return days * _DAY_S - zone_s + _of_day(hours, minutes, seconds)
+    return days * DAY_S - zone_s + _of_day(hours, minutes, seconds)
 
 
 def _of_day(hours: str, minutes: str, seconds: str) -> Fraction:
@@ -73,7 +73,7 @@ def decimal(seconds: Fraction) -> str:
 def shown(seconds: float) -> str:
     """Return what a clock showed, for people: with the date if it counts from 1970."""
     text = f"{seconds:.10g} s" if abs(seconds) < 1e9 else f"{seconds:.14g} s"
-    if not _UNIX[0] <= seconds < _UNIX[1]:
+    if not UNIX[0] <= seconds < UNIX[1]:
         return text
     moment = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=int(seconds))
     return f"{text} since 1970, {moment:%Y-%m-%d %H:%M:%S} UTC"

@@ -12,12 +12,12 @@ from reference import InputError
 from .names import Layout, Naming, advice, by_number, given, layout, meaning, units_of
 from .text import SEPARATORS, says_nothing, split, without_end, words
 
-_MOST = 1000  # lines above the first row that are looked at
+MOST = 1000  # lines above the first row that are looked at
 # names of columns in a comment, and half of its words, from which on it is meant as the header
-_FEW = 2
+FEW = 2
 # of a line that holds them
-_UNITS_LABEL = re.compile(r"(?:units?|einheit(?:en)?)\s*[:=]?[\s,;]+", re.IGNORECASE)
-_SI_UNITS = ("", "s", "m", "m/s")
+UNITS_LABEL = re.compile(r"(?:units?|einheit(?:en)?)\s*[:=]?[\s,;]+", re.IGNORECASE)
+SI_UNITS = ("", "s", "m", "m/s")
 COMMAS = "Numbers with a decimal comma cannot be told apart between commas: separate the columns by semicolons."
 
 
@@ -75,7 +75,7 @@ class Header:
         if says_nothing(text):
             return
         self.lines.append(HeaderLine(number, text, comment))
-        if len(self.lines) > _MOST:
+        if len(self.lines) > MOST:
             if not comment:
                 where = f"{self.name}: line {number}"
                 expected = "a row of numbers before it"
@@ -201,7 +201,7 @@ class Header:
         for way in ways:  # of another number of columns
             if self._is_complete(way) and (not line.comment or len(_columns(way)) == len(way)):
                 return way
-        enough = max(min(_FEW, len(self.needed)), count // 2) if line.comment else 0
+        enough = max(min(FEW, len(self.needed)), count // 2) if line.comment else 0
         for way in fitting:
             if len(_columns(way)) >= enough:
                 return way
@@ -235,7 +235,7 @@ class Header:
 
         None for another line.
         """
-        text = _UNITS_LABEL.sub("", self.lines[i].text, count=1)
+        text = UNITS_LABEL.sub("", self.lines[i].text, count=1)
         for separator in SEPARATORS:
             fields = split(text, separator)
             if len(fields) >= count and not any(fields[count:]):
@@ -268,13 +268,13 @@ class Header:
     def _refuse_loose_units(self) -> None:
         """Refuse a line that says units but not of which column, unless it says SI units anyway."""
         for line in self.lines:
-            label = _UNITS_LABEL.match(line.text)
+            label = UNITS_LABEL.match(line.text)
             text = line.text[label.end() :] if label else line.text
             fields = re.split(r"[\s,;|]+", text.strip(" \t,;|"))
             if line.comment and not label and len(fields) == 1:
                 continue
             units = units_of(fields)
-            if units and not set(units) <= set(_SI_UNITS):
+            if units and not set(units) <= set(SI_UNITS):
                 where = f"{self.name}: line {line.number}"
                 what_to_do = "Write units into the header, or say --units ms,cm."
                 raise InputError(where, line.text[:80], "a unit for each column", what_to_do)

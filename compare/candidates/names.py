@@ -21,27 +21,27 @@ from reference.system.documents import texts_of
 from .candidate import COLUMNS, Deviation, multiplied
 
 vocabulary = texts_of(__file__)
-_DIRECTIONS: dict[str, tuple[str, int]] = {
+DIRECTIONS: dict[str, tuple[str, int]] = {
     word: (axis, sign) for word, (axis, sign) in vocabulary["directions"].items()
 }
-_AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | _DIRECTIONS
-_AXIS = "|".join(sorted(_AXES, key=len, reverse=True))
+AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
+_AXIS = "|".join(sorted(AXES, key=len, reverse=True))
 _PLACE = "position|pos|coordinate|coord|displacement|disp|location|loc"
 _SPEED = "velocity|vel|speed"
 POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
 VELOCITY = re.compile(
     rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt"
 )
-_TIME_WORDS: set[str] = set(vocabulary["time_words"])
+TIME_WORDS: set[str] = set(vocabulary["time_words"])
 # a column that is called so
-_TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")
+TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")
 # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
-_LONGEST = 100
-_BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
+LONGEST = 100
+BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*([^(\[{<]*?)\s*[)\]}>]")
 # one piece or two
-_AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
-_LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
-_LABEL = re.compile(
+AFTER = re.compile(r"(.*?)(?:\s*/\s*|[\s_]in[\s_]|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
+LAST = re.compile(r"(.*)[\s_.]+([^\s_.]+)")
+LABEL = re.compile(
     r"(?:(?:latest|run\s*#?\d+|data\s*set(?:\s*\d+)?)\s*:\s*)?(.*?)(?:[\s,]+run\s*#?\d+)?",
     re.IGNORECASE,
 )
@@ -52,18 +52,18 @@ LENGTHS: dict[str, Fraction] = {
     unit: Fraction(size) for unit, size in vocabulary["lengths"].items()
 }  # in m
 LONG_NAMES: dict[str, str] = vocabulary["long_names"]
-_OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
-_OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
-_TYPES: set[str] = set(vocabulary["types"])  # words that a line of types below the header may hold
-_PER = re.compile(
+OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
+OTHER_UNITS: set[str] = set(vocabulary["other_units"])  # of columns that are not read
+TYPES: set[str] = set(vocabulary["types"])  # words that a line of types below the header may hold
+PER = re.compile(
     r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)"
 )
-_SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
+SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
 # columns of a trajectory, of which those of z and of velocities may be missing
 NEEDED = ("t", "x", "y")
-_SKIPPED = ("-", "_", "")  # words for a column that is not read
+SKIPPED = ("-", "_", "")  # words for a column that is not read
 # by their number; the paper's program foucPend prints ten: t x y z X Y Z φ λ speed
-_UNNAMED = {
+UNNAMED = {
     3: ("t", "x", "y"),
     4: ("t", "x", "y", "z"),
     7: ("t", *COLUMNS),
@@ -101,9 +101,9 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
     """
     text = _unquoted(word)
     # what ends with a separator is a part of a line
-    if len(text) > _LONGEST or text[-1:] in (",", ";", "|"):
+    if len(text) > LONGEST or text[-1:] in (",", ";", "|"):
         return None
-    label = _LABEL.fullmatch(text)
+    label = LABEL.fullmatch(text)
     text = label[1] if label else text
     for name, suffix, direction in _parts(text):
         named = _column(name)
@@ -115,7 +115,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         if direction:
             if column == "t":
                 continue
-            axis, sign = _DIRECTIONS[direction.lower()]
+            axis, sign = DIRECTIONS[direction.lower()]
             column = f"{column[:-1]}{axis}"
             rank = 2
         is_function_of_time = suffix.lower() in ("t", "time") and column != "t"
@@ -123,7 +123,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         default = units.get(column, "")
         size = size_of(unit or default, column) if unit or default else Fraction(1)
         if size is None:
-            if _BRACKETS.fullmatch(text):
+            if BRACKETS.fullmatch(text):
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
         if unit and default and size not in (1, size_of(default, column)):
@@ -144,26 +144,26 @@ def _parts(text: str) -> list[tuple[str, str, str]]:
     """Return the ways to take a word apart into a name, a unit and a direction, the most likely first."""
     ways = []
     for name, last in _with_unit(text):
-        if last.lower() in _DIRECTIONS:
+        if last.lower() in DIRECTIONS:
             ways += [(before, unit, last) for before, unit in _with_unit(name)]
     return ways + [(name, unit, "") for name, unit in _with_unit(text)]
 
 
 def _with_unit(text: str) -> list[tuple[str, str]]:
     """Return the ways to take a text apart into a name and a unit, which may be empty."""
-    if brackets := _BRACKETS.fullmatch(text):
+    if brackets := BRACKETS.fullmatch(text):
         return [(brackets[1], brackets[2])]
     ways = [(text, "")]
-    if _TIME_UNITS.fullmatch(text.lower()):
+    if TIME_UNITS.fullmatch(text.lower()):
         ways.append(("t", text))
-    if after := _AFTER.fullmatch(text):
+    if after := AFTER.fullmatch(text):
         ways.append((after[1], after[2]))
     return ways + _last_apart(text)
 
 
 def _last_apart(text: str) -> list[tuple[str, str]]:
     """Return a text without its last piece, and this piece."""
-    last = _LAST.fullmatch(text)
+    last = LAST.fullmatch(text)
     return [(last[1], last[2])] if last else []
 
 
@@ -174,13 +174,13 @@ def _column(name: str) -> tuple[str, int, int] | None:
     plain = unicodedata.normalize("NFD", name.lower()).replace("\u0307", "dot")
     plain = re.sub(r"['’′]$", "prime", plain)
     plain = "".join(letter for letter in plain if letter.isalnum())
-    if plain in _TIME_WORDS:
+    if plain in TIME_WORDS:
         return "t", 1, 2
     for pattern, speed in ((POSITION, ""), (VELOCITY, "v")):
         if match := pattern.fullmatch(plain):
             *before, word = filter(None, match.groups())
-            if not before or word in _DIRECTIONS:
-                axis, sign = _AXES[word]
+            if not before or word in DIRECTIONS:
+                axis, sign = AXES[word]
                 return f"{speed}{axis}", sign, 2
     return None
 
@@ -191,7 +191,7 @@ def _plain_unit(word: str) -> str:
     Other words come back in lower case.
     """
     word = word.strip().lower().replace("µ", "u").replace("μ", "u").strip(".")
-    return _OTHER_WORDS.get(word, word)
+    return OTHER_WORDS.get(word, word)
 
 
 def size_of(unit: str, column: str) -> Fraction | None:
@@ -206,8 +206,8 @@ def size_of(unit: str, column: str) -> Fraction | None:
     if column in ("x", "y", "z"):
         return LENGTHS.get(_plain_unit(unit))
     word = unit.strip().lower()
-    word = "m/s" if word == "ms" else _SHORT_SPEEDS.get(word, word)
-    parts = _PER.fullmatch(word)
+    word = "m/s" if word == "ms" else SHORT_SPEEDS.get(word, word)
+    parts = PER.fullmatch(word)
     if parts is None:
         return None
     length = LENGTHS.get(_plain_unit(parts[1] or parts[3]))
@@ -338,7 +338,7 @@ def layout(
     conventions = []
     if renamed:
         unread = [_unquoted(word) for i, word in enumerate(words) if i not in places.values()]
-        unread = [word for word in unread if word not in _SKIPPED]
+        unread = [word for word in unread if word not in SKIPPED]
         remark = f"; not read: {', '.join(unread)}" if unread else ""
         conventions.append(Deviation("columns", f"{', '.join(renamed)}{remark}"))
     if converted:
@@ -404,7 +404,7 @@ def _bare_unit(printed: str) -> str:
     text = _unquoted(printed)
     if len(text) > 1 and text[0] in "([{<" and text[-1] in ")]}>":
         text = text[1:-1].strip()
-    return "" if text in _SKIPPED or text.lower() in _TYPES else text
+    return "" if text in SKIPPED or text.lower() in TYPES else text
 
 
 def units_of(words: Sequence[str]) -> list[str] | None:
@@ -413,11 +413,11 @@ def units_of(words: Sequence[str]) -> list[str] | None:
     Names of types, such as double, stand for no unit, and so does an empty word.
     """
     units = [_bare_unit(word) for word in words]
-    has_unit = any(_unquoted(word).lower() in _TYPES for word in words)
+    has_unit = any(_unquoted(word).lower() in TYPES for word in words)
     for unit in units:
         if any(size_of(unit, column) is not None for column in ("t", "x", "vx")):
             has_unit = True
-        elif unit and _plain_unit(unit) not in _OTHER_UNITS:
+        elif unit and _plain_unit(unit) not in OTHER_UNITS:
             return None
     return units if has_unit else None
 
@@ -434,7 +434,7 @@ def given(count: int, naming: Naming) -> Layout:
     if len(names) != count:
         expected = f"a name for each of the {count} columns, - for one that is not read"
         raise InputError(option, ",".join(names), expected)
-    unknown = [name for name in names if name.strip() not in _SKIPPED and meaning(name, {}) is None]
+    unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
     if unknown:
         expected = f"names of {', '.join(['t', *COLUMNS])}"
         what_to_do = "Write - for a column that is not read."
@@ -449,7 +449,7 @@ def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | Non
     """
     if len(needed) == 1:
         return layout(["t"], needed, naming, "--columns") if count == 1 else None
-    names = _UNNAMED.get(count)
+    names = UNNAMED.get(count)
     if names is None:
         return None
     unread = ["-"] * (count - len(names))

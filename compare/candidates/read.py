@@ -71,11 +71,11 @@ from .text import (
 _TELLING = 6  # bytes that tell an archive from text
 _CHUNK = 1 << 22
 _SAMPLE = 50  # rows that are searched for numbers with more digits than a double's
-_DOUBLE_DIGITS = 17  # decimal digits that identify a double
+DOUBLE_DIGITS = 17  # decimal digits that identify a double
 # decimals of up to this many digits survive a double, so a precise program means the decimal itself
 _SURE_DIGITS = 15
 _EXACT = Context(prec=40)  # rounds a difference to 40 digits, far more than a low part holds
-_DECIMAL_COMMA = Deviation("decimal_comma", "numbers have a comma for the decimal point")
+DECIMAL_COMMA = Deviation("decimal_comma", "numbers have a comma for the decimal point")
 
 
 def read(
@@ -342,7 +342,7 @@ class _ColumnReader:
         separator = reading.separator or None
         table = np.loadtxt(rows, delimiter=separator, usecols=places, comments=None, ndmin=2)
         if mark == ",":
-            self.conventions.append(_DECIMAL_COMMA)
+            self.conventions.append(DECIMAL_COMMA)
             self.rows = [row.replace(",", ".") for row in self.rows]
         return table
 
@@ -513,7 +513,7 @@ class _ColumnReader:
             raise self._no_number(self.lines[i], "t", times[i])
         self._check_marks(numbers, reading)
         if any("," in number for column in numbers for number in column):
-            self.conventions.append(_DECIMAL_COMMA)
+            self.conventions.append(DECIMAL_COMMA)
         self.rows = [" ".join(map(plain, fields)) for fields in zip(*columns, strict=True)]
 
     def _fields_without_lost_rows(self, reading: _TextReading) -> list[list[str]]:
@@ -648,7 +648,7 @@ def _low_part(text: str, near: float, of_time: bool = False) -> float:
     mantissa = text.lower().partition("e")[0]
     significant_digits = sum(map(str.isdigit, mantissa.strip().lstrip("+-0.")))
     is_decimal = of_time and significant_digits <= _SURE_DIGITS
-    if significant_digits <= _DOUBLE_DIGITS and not is_decimal:
+    if significant_digits <= DOUBLE_DIGITS and not is_decimal:
         return 0.0
     printed = Decimal(text.strip())
     difference = _EXACT.subtract(printed, Decimal(near))

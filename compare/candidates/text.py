@@ -15,30 +15,23 @@ MAX_LINE = 1 << 20
 MAX_LINES = 4_000_000
 MARKS = frozenset("#%!/")  # with which a comment begins
 COMMENT = re.compile(r"(?:[#%!]|//)\s*(.*)")
-_RULE = "-=+|:_ \t"  # characters of a line drawn below a header, as in Markdown
-_EMPTY = ' \t,;|"'  # characters of a line without a field
+RULE = "-=+|:_ \t"  # characters of a line drawn below a header, as in Markdown
+EMPTY = ' \t,;|"'  # characters of a line without a field
 SEPARATORS = (",", ";", "\t", "|", "")  # the last is white space
-_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+|[0-9]*,[0-9]+)([eEdD][+-]?[0-9]+)?")
-_NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
-_FORTRAN = re.compile(r"(?<=[0-9.])[dD](?=[+-]?[0-9])")
+NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+|[0-9]*,[0-9]+)([eEdD][+-]?[0-9]+)?")
+NOT_FINITE = re.compile(r"[+-]?(nan|inf|infinity)", re.IGNORECASE)
+FORTRAN = re.compile(r"(?<=[0-9.])[dD](?=[+-]?[0-9])")
 # never read, but no word either
-_HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)
+HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)
 # thousands, or a decimal mark before three digits
 GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}([,.][0-9]{3})+")
 THOUSANDS = re.compile(r"[+-]?[0-9]{1,3}([,.'’ \u00a0\u202f][0-9]{3})+([.,][0-9]*)?")
 # how no program prints a whole number, but the digits after a comma
-_PADDED = re.compile(r"[+-]?0[0-9]+")
-_MISSING = (
-    "",
-    "na",
-    "n/a",
-    "#n/a",
-    "null",
-    "none",
-)  # of a field without a number, in small letters
-_APART = re.compile(r"\s{2,}|\t")
-_BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
-_QUOTED_WORD = re.compile(r"""(?:"[^"]*"|[^"\s])+""")
+PADDED = re.compile(r"[+-]?0[0-9]+")
+MISSING = ("", "na", "n/a", "#n/a", "null", "none")  # of a field without a number, in small letters
+APART = re.compile(r"\s{2,}|\t")
+BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
+QUOTED_WORD = re.compile(r"""(?:"[^"]*"|[^"\s])+""")
 # [hours:]minutes:seconds, and a date before it; two numbers alone may be hours and minutes
 CLOCK = re.compile(r"(?:([0-9]+):)?([0-5]?[0-9]):([0-5]?[0-9](?:[.,][0-9]+)?)")
 MOMENT = re.compile(
@@ -49,7 +42,7 @@ MOMENT = re.compile(
 
 def is_number(text: str) -> bool:
     """Return True for a number as C and Fortran print it (NaN and inf too), not for forms that only Python reads."""
-    return _NUMBER.fullmatch(text) is not None or _NOT_FINITE.fullmatch(text) is not None
+    return NUMBER.fullmatch(text) is not None or NOT_FINITE.fullmatch(text) is not None
 
 
 def is_clock(text: str) -> bool:
@@ -60,12 +53,12 @@ def is_clock(text: str) -> bool:
 def says_nothing(line: str) -> bool:
     """Return True for a line that has no field, or is drawn."""
     text = line.strip()
-    return not text.strip(_EMPTY) or ("---" in text and not text.strip(_RULE))
+    return not text.strip(EMPTY) or ("---" in text and not text.strip(RULE))
 
 
 def is_missing(text: str) -> bool:
     """Return True for a field that says that there is no number."""
-    return text.lower() in _MISSING
+    return text.lower() in MISSING
 
 
 def _unquoted(field: str) -> str:
@@ -86,7 +79,7 @@ def split(line: str, separator: str) -> list[str]:
         fields = line.split(separator or None)
         return [field.strip() for field in fields]
     if not separator:
-        return [_unquoted(word) for word in _QUOTED_WORD.findall(line)]
+        return [_unquoted(word) for word in QUOTED_WORD.findall(line)]
     mark = re.escape(separator)
     fields = re.findall(f'((?:"[^"]*"|[^"{mark}])*){mark}', line + separator)
     return [_unquoted(field) for field in fields]
@@ -104,7 +97,7 @@ def possible_separators(line: str) -> list[tuple[str, float]]:
             continue
         fields = [field for field in split(line, separator) if not is_missing(field)]
         numbers = [
-            is_number(field) or is_clock(field) or bool(_HEXFLOAT.fullmatch(field))
+            is_number(field) or is_clock(field) or bool(HEXFLOAT.fullmatch(field))
             for field in fields
         ]
         share = sum(numbers) / max(1, len(fields))
@@ -119,7 +112,7 @@ def words(line: str) -> list[list[str]]:
     Separators at its end add no word.
     """
     ways = [split(line, separator) for separator in SEPARATORS if separator and separator in line]
-    ways += [_APART.split(line.strip()), split(_BEFORE_BRACKET.sub("", line), ""), split(line, "")]
+    ways += [APART.split(line.strip()), split(BEFORE_BRACKET.sub("", line), ""), split(line, "")]
     return [without_end(way) for way in ways]
 
 
@@ -167,9 +160,9 @@ def doubtful_number(columns: Sequence[Sequence[str]], commas_separate: bool) -> 
 
 def plain(number: str) -> str:
     """Return a number with a point and an e, as Python and C read it."""
-    return _FORTRAN.sub("e", number.replace(",", "."))
+    return FORTRAN.sub("e", number.replace(",", "."))
 
 
 def padded(fields: Sequence[str]) -> str | None:
     """Return the first whole number with leading zeros, or None."""
-    return next((field for field in fields if _PADDED.fullmatch(field)), None)
+    return next((field for field in fields if PADDED.fullmatch(field)), None)
