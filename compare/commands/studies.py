@@ -20,6 +20,7 @@ from reference.commands.terminal import (
     replacements,
     stoppable,
 )
+from reference.system.channel import ACTIVITY
 
 from .options import (
     Commands,
@@ -36,6 +37,7 @@ from .options import (
     resumes,
 )
 
+_WRITING = "writing the report"
 LIMIT_S = 8.0  # default of --limit in `study`
 STABILITY_LIMIT_S = 3.0  # the same in `stability`
 STEPS_S = "0.1,0.01"  # default of --settings
@@ -210,8 +212,10 @@ def _study_methods(scene: Scene, options: StudyOptions) -> None:
             report=show(scene.id, unit="runs"),
             announce=announce,
         )
-    document = done.document()
-    finish(document, REPORT.text, REPORT.write(document, options.out), options.as_json)
+        ACTIVITY.send(_WRITING)
+        document = done.document()
+        page = REPORT.write(document, options.out)
+    finish(document, REPORT.text, page, options.as_json)
 
 
 def _study_approximations(scene: Scene, options: StudyOptions) -> None:
@@ -222,7 +226,9 @@ def _study_approximations(scene: Scene, options: StudyOptions) -> None:
         report = report_of(scene, swept)
         report.check(options.out)
         document = document_of(scene, swept, show(scene.id, unit="tables"))
-    finish(document, report.text, report.write(document, options.out), options.as_json)
+        ACTIVITY.send(_WRITING)
+        page = report.write(document, options.out)
+    finish(document, report.text, page, options.as_json)
 
 
 def stability(options: StabilityOptions) -> None:
@@ -261,8 +267,10 @@ def stability(options: StabilityOptions) -> None:
                 journal_path=options.out and options.out / "long.jsonl",
                 reports=Reports(days, show("30 days", unit="runs")),
             )
-    document = document_of(cells, runs, programs)
-    finish(document, REPORT.text, REPORT.write(document, options.out), options.as_json)
+        ACTIVITY.send(_WRITING)
+        document = document_of(cells, runs, programs)
+        page = REPORT.write(document, options.out)
+    finish(document, REPORT.text, page, options.as_json)
 
 
 def methods(as_json: AsJson = False) -> None:

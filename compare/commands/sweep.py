@@ -10,7 +10,7 @@ import typer
 
 from reference import InputError, UnreachableError, load_scene
 from reference.commands.options import Conflict, refuse_conflicts
-from reference.commands.progress import Move, progress
+from reference.commands.progress import progress
 from reference.commands.terminal import (
     AsJson,
     Assignments,
@@ -29,6 +29,7 @@ from reference.commands.terminal import (
 )
 from reference.scenes.fields import LEVELS
 from reference.status import Status
+from reference.system.workers import usable_cores
 
 from .options import announce
 
@@ -181,9 +182,11 @@ def _run(request: Request, options: SweepOptions) -> Swept:
     else:
         kept = f"what is done is in {out}: `foucault sweep --out {out}` goes on"
     with stoppable(kept), progress() as show:
-        name = f"sweep of {request.scene.id}"
-        move = show(name, request.table.count, "rows")
-        checks: list[Move] = []
+        # the audit is done on one core, after the rows on all
+        workers = options.workers or usable_cores()
+        rows_per_audited = request.rows_per_audited * workers
+        rows = request.table.count
+        move = show(f"sweep of {request.scene.id}", rows, "rows", request.audit * rows_per_audited)
         done = 0
 
         def report(count: int) -> None:
@@ -192,9 +195,7 @@ def _run(request: Request, options: SweepOptions) -> Swept:
             move(done)
 
         def report_audit(count: int) -> None:
-            check = checks[0] if checks else show(f"audit of {name}", request.audit, "rows")
-            checks[:] = [check]
-            check(count)
+            move(rows + count * rows_per_audited, item=f"auditing {request.audit} rows")
 
         return run(request, out, options.workers, options.cluster, report, report_audit)
 

@@ -14,8 +14,9 @@ from ..errors import InputError, counted, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
+from ..system.channel import ACTIVITY
 from .options import Conflict, as_command, refuse_conflicts
-from .progress import progress
+from .progress import Move, Show, progress
 from .terminal import (
     BESIDE_RANGES,
     AsJson,
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
     from ..solver.ranges import Ranges
     from ..solver.solution import Solution
 
+_WRITING = "writing and checking the files"
+_WRITING_SHARE = 0.15  # of the time that solving takes
 _ENGINES = (AUTO, *engine_names())
 
 _SCENE = scene_argument(value="[SCENE]")
@@ -240,13 +243,21 @@ def _generate_dataset(options: _GenerateOptions) -> None:
     making = options.making
     folder = options.folder
     check_target(folder)
-    solution = _solved(options, making)
-    with stoppable("nothing half was written"):
-        write(solution, folder, options.dataset_name, tables=making.tables)
+    with progress() as show:
+        solution = _solved(options, making, show)
+        with stoppable("nothing half was written"):
+            ACTIVITY.send(_WRITING)
+            write(solution, folder, options.dataset_name, tables=making.tables)
     _print_dataset(solution, folder, options.as_json)
 
 
-def _solved(options: _GenerateOptions, making: Making) -> Solution:
+def _report(scene: Scene, show: Show) -> Move:
+    """Return the report of a scene that is solved, after which its files are written."""
+    t_end = float(scene.exact.t_end)
+    return show(scene.id, t_end, later=_WRITING_SHARE * t_end)
+
+
+def _solved(options: _GenerateOptions, making: Making, show: Show) -> Solution:
     """Return the solution of a scene in the way in which its dataset is made.
 
     Raises:
@@ -256,9 +267,8 @@ def _solved(options: _GenerateOptions, making: Making) -> Solution:
     from ..solver.solve import solve
 
     scene = options.scene
-    with stoppable("nothing was written"), progress() as show:
-        report = show(scene.id, float(scene.exact.t_end))
-        solution = solve(scene, **making.solve_options(scene), report=report)
+    with stoppable("nothing was written"):
+        solution = solve(scene, **making.solve_options(scene), report=_report(scene, show))
     run = solution.run
     if options.engine not in (AUTO, run.engine):
         advice = f"So few digits need only {run.number}, which {options.engine} does not have."
@@ -323,12 +333,14 @@ def _generate_ranges(options: _GenerateOptions, widths: dict[str, str]) -> None:
     if options.out is not None:
         check_target(options.out, RANGES)
     scene = options.scene
-    with stoppable("nothing was written"), progress() as show:
-        report = show(scene.id, float(scene.exact.t_end))
-        ranges = prove_ranges(scene, widths, engine=options.engine, report=report)
-    folder = options.out or Path(GOLDEN, ranges_id(ranges))
-    with stoppable("nothing half was written"):
-        write_ranges(ranges, folder)
+    with progress() as show:
+        with stoppable("nothing was written"):
+            report = _report(scene, show)
+            ranges = prove_ranges(scene, widths, engine=options.engine, report=report)
+        folder = options.out or Path(GOLDEN, ranges_id(ranges))
+        with stoppable("nothing half was written"):
+            ACTIVITY.send(_WRITING)
+            write_ranges(ranges, folder)
     _print_ranges(ranges, folder, options.as_json)
 
 

@@ -1,7 +1,9 @@
 """Progress of long work, on stderr: a bar on a terminal, elsewhere a line now and then.
 
 The remaining time follows from the rate of the last seconds, because work often starts slowly: code
-is compiled, processes begin, a first part is measured.
+is compiled, processes begin, a first part is measured. Runs of different methods take from
+milliseconds to minutes each, so that those of the last seconds say little about the next ones:
+there the rate of all counts.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from ..plain_text import plain, terminal_of
 from ..system.channel import ACTIVITY, ANNOUNCEMENTS
 
 _WINDOW_S = 5.0  # the rate is measured over the last seconds
+_ALIKE = ("s", "rows", "days")  # units of which each takes about as long as the one before
 _LEAST_S = 2.0  # shortest time over which a rate is measured
 _NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
 _NEXT_NOTICE = 2.0  # each later notice comes after this factor of time
@@ -37,8 +40,8 @@ class Move(Protocol):
 class Show(Protocol):
     """Begins a piece of work."""
 
-    def __call__(self, label: str, total: float = 0, unit: str = "s") -> Move:
-        """Return the function that moves the work on, which is counted in units up to a total."""
+    def __call__(self, label: str, total: float = 0, unit: str = "s", later: float = 0.0) -> Move:
+        """Return the function that moves the work on; arguments as those of `Work`."""
 
 
 class _Sample(NamedTuple):
@@ -55,12 +58,14 @@ class Work:
         label: what the work is.
         total: how much of it there is, in `unit`.
         unit: unit of completed and total.
+        later: how many units more take as long as what follows; `completed` may count them, beyond the total.
     """
 
-    def __init__(self, label: str, total: float = 0, unit: str = "s") -> None:
+    def __init__(self, label: str, total: float = 0, unit: str = "s", later: float = 0.0) -> None:
         self.label = label
         self.total = total
         self.unit = unit
+        self.later = later
         self.activity = ""
         self.begun_s = time.monotonic()
         self._samples: deque[_Sample] = deque()
@@ -74,8 +79,23 @@ class Work:
         if completed < self.completed:  # it started again, in a higher precision
             self._samples.clear()
         self._samples.append(_Sample(time.monotonic(), completed))
-        while len(self._samples) > 2 and self._samples[1].time_s <= self._last.time_s - _WINDOW_S:
+        if self.unit in _ALIKE:
+            self._forget_before(self._last.time_s - _WINDOW_S)
+
+    def _forget_before(self, time_s: float) -> None:
+        """Forget all samples before a time but the last of them."""
+        while len(self._samples) > 2 and self._samples[1].time_s <= time_s:
             self._samples.popleft()
+
+    def begin(self, activity: str) -> None:
+        """Note what is being done from now on; what came before the first progress tells nothing about its rate."""
+        if activity == self.activity:
+            return
+        self.activity = activity
+        if self._samples and self.completed == self._samples[0].completed:
+            completed = self.completed
+            self._samples.clear()
+            self._samples.append(_Sample(time.monotonic(), completed))
 
     @property
     def completed(self) -> float:
@@ -91,9 +111,10 @@ class Work:
     def counted(self) -> str:
         """How much is done: a part of the simulated time in per cent, or so many of so many."""
         if self.unit == "s":
-            percent = 100 * self.completed / self.total if self.total else 0.0
+            percent = 100 * min(self.completed / self.total, 1.0) if self.total else 0.0
             return f"{percent:.0f} % of {_rough(self.total)} s"
-        return f"{_rough(self.completed)} of {_rough(self.total)} {self.unit}"
+        done = min(self.completed, self.total)
+        return f"{_rough(done)} of {_rough(self.total)} {self.unit}"
 
     @property
     def description(self) -> str:
@@ -114,7 +135,7 @@ class Work:
         waited_s = time.monotonic() - self._last.time_s
         if done <= 0 or measured_s + waited_s < _LEAST_S:
             return None
-        units_left = self.total - self._last.completed
+        units_left = self.total + self.later - self._last.completed
         if waited_s > measured_s:  # it has become slower
             return units_left * (measured_s + waited_s) / done
         return max(0.0, units_left * measured_s / done - waited_s)
@@ -141,14 +162,14 @@ def _as_lines() -> Iterator[Show]:
     """Show long work by lines: the first after twenty seconds, the next after forty, and so on."""
     current: list[Work] = []
 
-    def show(label: str, total: float = 0, unit: str = "s") -> Move:
-        work = Work(label, total, unit)
+    def show(label: str, total: float = 0, unit: str = "s", later: float = 0.0) -> Move:
+        work = Work(label, total, unit, later)
         current[:] = [work]
         return partial(_noticed, work, _Notices())
 
     def hear(text: str) -> None:
         for work in current:
-            work.activity = text
+            work.begin(text)
 
     with ANNOUNCEMENTS.heard_by(partial(typer.echo, err=True)), ACTIVITY.heard_by(hear):
         yield show
@@ -219,20 +240,30 @@ def _as_bars() -> Iterator[Show]:
         transient=True,
     )
 
-    def show(label: str, total: float = 0, unit: str = "s") -> Move:
-        work = Work(label, total, unit)
+    def show(label: str, total: float = 0, unit: str = "s", later: float = 0.0) -> Move:
+        work = Work(label, total, unit, later)
         task = bars.add_task("", total=total, work=work)
+        hide_done()
 
         def move(completed: float, total: float | None = None, item: str = "") -> None:
             work.move(completed, total, item)
-            bars.update(task, completed=completed, total=work.total, visible=completed < work.total)
+            bars.update(task, completed=completed, total=work.total)
+            hide_done()
 
         return move
+
+    def hide_done() -> None:
+        """Hide work that is done; but if all of it is, the last bar stays, as a sign of life."""
+        shown = [task for task in bars.tasks if task.visible]
+        undone = [task for task in shown if not task.finished]
+        for task in shown[:-1] if not undone else shown:
+            if task.finished:
+                bars.update(task.id, visible=False)
 
     def hear(text: str) -> None:
         for task in bars.tasks:
             if task.visible:
-                task.fields["work"].activity = text
+                task.fields["work"].begin(text)
 
     announce = partial(console.print, markup=False, highlight=False)
     with bars, ANNOUNCEMENTS.heard_by(announce), ACTIVITY.heard_by(hear):

@@ -97,7 +97,7 @@ def run_both(
         first: runs in this process.
         second: runs in the background if that pays.
         steps: about how many steps either takes.
-        report: called with the simulated time, the mean of both.
+        report: called with the simulated time, as far as the work of both is done.
     """
     first_s = expected_s(first, steps)
     second_s = expected_s(second, steps)
@@ -105,10 +105,16 @@ def run_both(
     end = float(first.times[-1])
     ACTIVITY.send("integrating")
     with in_background(pays, send_run, second) as background:
-        first_report = report and (lambda t: report((t + background.reached) / 2))
-        first_run = run(first, first_report)
-        second_report = report and (lambda t: report((end + t) / 2))
-        return first_run, background.result(second_report)
+        combine = max if background.at_work else sum
+        all_s = combine((first_s, second_s))
+
+        def tell(first_t: float, second_t: float) -> None:
+            left_s = combine((first_s * (1 - first_t / end), second_s * (1 - second_t / end)))
+            if report is not None:
+                report(end * (1 - left_s / all_s))
+
+        first_run = run(first, lambda t: tell(t, background.reached))
+        return first_run, background.result(lambda t: tell(end, t))
 
 
 def expected_s(plan: Plan, steps: int) -> float:

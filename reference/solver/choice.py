@@ -11,12 +11,19 @@ from hashlib import sha256
 from math import ceil
 
 from ..engines import AUTO
-from ..engines.plan import Plan
+from ..engines.plan import Plan, Report
 from ..engines.registry import fastest
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, real
 from ..scenes.scene import Scene
 from ..system.imports import needed
-from .pilot import Pilot, run_pilot, second_order_bits
+from .pilot import (
+    PILOT_GAP_BITS,
+    PILOT_PREC,
+    Pilot,
+    pilot_engine,
+    run_pilot,
+    second_order_bits,
+)
 from .proof_steps import COEFFICIENT_BITS, Feed
 from .proving import first_radius
 from .solution import SAMPLED
@@ -26,15 +33,23 @@ _FINER_BITS = 16  # bits that the published run has more than the one it is comp
 _ROUND_TO_BITS = 8
 # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
 _SAMPLES = 3
+_WITHOUT_TRANSITS = 0.5  # what a run takes that does not look for them, over one that does
 _HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 
 
-def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> Pilot:
+def pilot_for(
+    scene: Scene,
+    times: tuple[Fraction, ...],
+    engine: str = AUTO,
+    report: Report | None = None,
+) -> Pilot:
     """Return the pilot of a scene.
 
     It is in hardware numbers only if the level promises no bytes and the published numbers are in
     hardware. A single run states as its errors those that the pilot measured, so that its pilot
     uses the same engine.
+
+    `report` is called with the simulated time, as far as the work is done.
 
     Raises:
         UnreachableError: as `run_pilot`.
@@ -46,13 +61,23 @@ def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> 
         if _first_published(scene, times, pilot, engine).number.hardware:
             return pilot
     if scene.run.level != "computed":
-        return run_pilot(inputs, times)
+        return run_pilot(inputs, times, report=report)
 
-    pilot = run_pilot(inputs, times, samples=_SAMPLES)
+    # if the user names a slower engine, a second pilot by that one is most of the work
+    is_last = engine in (AUTO, pilot_engine(inputs, times[-1]).name)
+    first_report = report if is_last else None
+    pilot = run_pilot(inputs, times, samples=_SAMPLES, report=first_report)
     published_engine = _first_published(scene, times, pilot, engine).engine
     if published_engine == pilot.engine:
         return pilot
-    return run_pilot(inputs, times, published_engine, samples=_SAMPLES)
+    return run_pilot(inputs, times, published_engine, samples=_SAMPLES, report=report)
+
+
+def expected_pilot_s(engine: str, steps: int) -> float:
+    """Return about how many CPU seconds the pilot of a single run takes, by the steps of a run in double."""
+    prec = PILOT_PREC + PILOT_GAP_BITS
+    run_s = fastest(prec, engine, steps).expected_s(steps, prec)
+    return (_SAMPLES + 1) * run_s * _WITHOUT_TRANSITS
 
 
 def _first_published(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str) -> Plan:

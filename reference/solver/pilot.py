@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from ..engines import AUTO
-from ..engines.plan import Plan, Run
+from ..engines.plan import Engine, Plan, Report, Run
 from ..engines.registry import fastest, run
 from ..errors import BeyondDoublesError, UnreachableError
 from ..model.start import Start
@@ -26,8 +26,8 @@ from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from ..system.channel import ACTIVITY
 
-_PILOT_PREC = 47  # of the first exact run: three limbs
-_PILOT_GAP_BITS = 22  # bits between it and the second: a limb
+PILOT_PREC = 47  # of the first exact run: three limbs
+PILOT_GAP_BITS = 22  # bits between it and the second: a limb
 _LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
 # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
 MARGIN_BITS = 14
@@ -132,6 +132,7 @@ def run_pilot(
     *,
     samples: int = 1,
     hardware: bool = False,
+    report: Report | None = None,
 ) -> Pilot:
     """Measure rounding errors from two cheap runs, in higher precision if the first keep no digit.
 
@@ -142,6 +143,7 @@ def run_pilot(
         samples: how many coarser runs, a bit apart, the largest error of which counts.
         hardware: begin with double and long double, for a result in these types; its errors are
             measured, and not the same on every machine.
+        report: called with the simulated time, as far as the work of all runs is done.
 
     Raises:
         UnreachableError: the run takes too many steps, or rounding grows so fast that no affordable
@@ -150,7 +152,7 @@ def run_pilot(
     ACTIVITY.send("measuring how errors grow")
     if len(times) <= _LEAST_TIMES:
         times = tuple(times[-1] * k / _LEAST_TIMES for k in range(_LEAST_TIMES + 1))
-    pair = _PilotPair(inputs, times, engine, _PILOT_PREC, _PILOT_PREC + _PILOT_GAP_BITS)
+    pair = _PilotPair(inputs, times, engine, PILOT_PREC, PILOT_PREC + PILOT_GAP_BITS)
     if hardware:
         pair = replace(pair, prec=DOUBLE.prec, fine_prec=LONG_DOUBLE.prec, hardware=True)
 
@@ -159,7 +161,7 @@ def run_pilot(
     good_until = Fraction(0)
     steps = 0
     while pair.fine_prec <= MAX_PREC and effort(steps, pair.fine_prec) <= _MAX_STEPS:
-        runs = pair.run(samples, pace)
+        runs = pair.run(samples, pace, report)
         pace = None  # the first pair has shown it
         steps = runs.coarse.steps
         if not runs.lost():
@@ -178,6 +180,15 @@ def run_pilot(
         f"to the end it takes about {pair.prec} bits, which is out of reach.",
         "Ask for a shorter run: run.t_end.",
     )
+
+
+def pilot_engine(
+    inputs: Inputs, end: Fraction, engine: str = AUTO, prec: int = PILOT_PREC
+) -> Engine:
+    """Return the engine of a pilot run of `prec` bits until a time in s."""
+    # about one a step
+    radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(end))
+    return fastest(max(prec, LONG_DOUBLE.prec + 1), engine, 2 * radians)
 
 
 @dataclass(frozen=True)
@@ -200,30 +211,37 @@ class _PilotPair:
     fine_prec: int
     hardware: bool = False
 
-    def run(self, samples: int, pace: Pace | None) -> _PilotRuns:
+    def run(self, samples: int, pace: Pace | None, report: Report | None) -> _PilotRuns:
         """Make the runs, and coarse ones of a few more bits up to `samples` in all.
 
         Raises:
             UnreachableError: at its pace the coarse run takes too many steps.
         """
         try:
-            coarse = run(self._plan(self.prec), pace=pace)
-            fine = run(self._plan(self.fine_prec))
-            further = [run(self._plan(self.prec + i)) for i in range(1, samples)]
+            coarse = run(self._plan(self.prec), self._nth_report(report, 0, samples), pace)
+            fine = run(self._plan(self.fine_prec), self._nth_report(report, 1, samples))
+            further = [
+                run(self._plan(self.prec + i), self._nth_report(report, 1 + i, samples))
+                for i in range(1, samples)
+            ]
             tension = coarse.tension
         except OverflowError:
             raise BeyondDoublesError from None
         return _PilotRuns(self, coarse, fine, further, tension)
+
+    def _nth_report(self, report: Report | None, n: int, samples: int) -> Report | None:
+        """Return the report of run n, from 0, of the fine run and `samples` coarse ones."""
+        if report is None:
+            return None
+        end = float(self.times[-1])
+        return lambda t: report((n * end + t) / (samples + 1))
 
     def _plan(self, prec: int) -> Plan:
         """Return a pilot run, in limbs or in heyoka's `real` unless it is to be in hardware."""
         if self.hardware:
             number = DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE
             return Plan(self.inputs, "momentum", number, self.times)
-        # about one a step
-        start = Start.of(self.inputs, LONG_DOUBLE.prec)
-        radians = math.ceil(start.fastest_rate * float(self.times[-1]))
-        engine = fastest(max(prec, LONG_DOUBLE.prec + 1), self.engine, 2 * radians)
+        engine = pilot_engine(self.inputs, self.times[-1], self.engine, prec)
         plan = engine.plan(self.inputs, prec, self.times)
         return replace(plan, number=real(prec)) if plan.number.hardware else plan
 

@@ -19,15 +19,27 @@ from ..engines.registry import checked, fastest, run, run_both
 from ..errors import UnreachableError
 from ..model.start import Start
 from ..numbers.columns import GRID
-from ..numbers.precision import DOUBLE, LONG_DOUBLE
+from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of
 from ..numbers.zeros import XDOT
 from ..scenes.fields import Confirmation
 from ..scenes.scene import AnyScene, Scene
 from .agreement import Agreement, with_zero_errors
-from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
-from .pilot import MAX_PREC, MAX_RAISES, Pace, Pilot, check_reach, out_of_reach
+from .choice import (
+    confirming_plan,
+    expected_pilot_s,
+    first_prec,
+    pilot_for,
+    published_plan,
+    rounded_prec,
+)
+from .pilot import MARGIN_BITS, MAX_PREC, MAX_RAISES, Pace, Pilot, check_reach, out_of_reach
 from .request import ProofOptions, RunSettings, SolveRequest
 from .solution import CrossCheck, Solution, Source
+from .workload import Workload
+
+# parts of a single run's work, as its progress names them
+_MEASURING = "measuring how errors grow"
+_INTEGRATING = "integrating"
 
 
 def solve(
@@ -98,10 +110,9 @@ def _solved(request: SolveRequest) -> Solution:
 
         return solve_enclosed(request)
 
-    pilot = pilot_for(scene, request.times, request.engine)
     if level == "computed":
-        return _computed(request, pilot)
-    return _agreed(request, pilot)
+        return _computed(request)
+    return _agreed(request, pilot_for(scene, request.times, request.engine))
 
 
 def solve_at(scene: Scene, times: Collection[Fraction], digits: int) -> Solution:
@@ -133,9 +144,8 @@ def roughly(
     zeros: tuple[str, ...] = ()
     if scene.run.transits:
         zeros = (XDOT,)
-        # the pace does not end a run that looks for transits; it takes about one step a radian
-        radians = math.ceil(Start.of(scene.exact, LONG_DOUBLE.prec).fastest_rate * float(end))
-        check_reach(radians, LONG_DOUBLE.prec, scene.run.digits)
+        # the pace does not end a run that looks for transits
+        check_reach(_expected_steps(scene, end), LONG_DOUBLE.prec, scene.run.digits)
 
     fine = Plan(scene.exact, "momentum", LONG_DOUBLE, moments, zeros)
     coarse = replace(fine, formulation="spin", number=DOUBLE)
@@ -148,15 +158,35 @@ def roughly(
     return _assemble(scene, published, gap, (check,), pilot_s=0.0)
 
 
-def _computed(request: SolveRequest, pilot: Pilot) -> Solution:
+def _expected_steps(scene: Scene, end: Fraction) -> int:
+    """Return about how many steps a run in double takes until a time in s: one a radian."""
+    return math.ceil(Start.of(scene.exact, LONG_DOUBLE.prec).fastest_rate * float(end))
+
+
+def _computed(request: SolveRequest) -> Solution:
     """Solve by a single run, whose errors are estimated from the pilot's."""
     scene = request.scene
+    workload = _work_of_a_single_run(request)
+    pilot = pilot_for(scene, request.times, request.engine, workload.part(_MEASURING))
+    workload.finish(_MEASURING)
     prec = first_prec(scene, pilot, request.engine)
     check_reach(pilot.steps, prec, scene.run.digits)
     plan = published_plan(scene, request.times, pilot, prec, request.engine)
-    published = run(plan, request.report)
+    published = run(plan, workload.part(_INTEGRATING))
     errors = pilot.estimates(published.plan.number.prec)
     return _assemble(scene, published, Agreement(0, {}, errors), (), pilot.cpu_s)
+
+
+def _work_of_a_single_run(request: SolveRequest) -> Workload:
+    """Return the parts of the work, with their expected CPU seconds."""
+    end = request.times[-1]
+    steps = _expected_steps(request.scene, end)
+    prec = rounded_prec(bits_of(request.scene.run.digits) + MARGIN_BITS)
+    parts_s = {
+        _MEASURING: expected_pilot_s(request.engine, steps),
+        _INTEGRATING: fastest(prec, request.engine, steps).expected_s(steps, prec),
+    }
+    return Workload(request.report, float(end), parts_s)
 
 
 def _agreed(request: SolveRequest, pilot: Pilot) -> Solution:

@@ -41,8 +41,9 @@ class Workload:
         return report
 
     def watch(self, activity: str, work: Background) -> None:
-        """Take part of the work from a background, as far as that has come."""
-        self._background[activity] = work
+        """Take part of the work from a background, as far as that has come, if it is done at the same time."""
+        if work.at_work:
+            self._background[activity] = work
 
     def finish(self, activity: str) -> None:
         """Count a part as done, even if it has taken fewer steps than expected."""
@@ -60,8 +61,21 @@ class Workload:
         if unfinished:
             order = list(self._expected_s)
             ACTIVITY.send(" and ".join(sorted(unfinished, key=order.index)))
-        done_s = sum(
-            cost * self._reached_s[activity] for activity, cost in self._expected_s.items()
+        all_s = self._longest(dict.fromkeys(self._expected_s, 1.0))
+        left_s = self._longest(
+            {activity: 1 - t / self._end_s for activity, t in self._reached_s.items()}
         )
         assert self._report is not None
-        self._report(done_s / sum(self._expected_s.values()))
+        self._report(self._end_s * (1 - left_s / all_s))
+
+    def _longest(self, shares: Mapping[str, float]) -> float:
+        """Return how long shares of the parts take, in expected seconds: those of the background beside the others."""
+        here_s = 0.0
+        longest_s = 0.0
+        for activity, share in shares.items():
+            part_s = share * self._expected_s[activity]
+            if activity in self._background:
+                longest_s = max(longest_s, part_s)
+            else:
+                here_s += part_s
+        return max(here_s, longest_s)

@@ -55,6 +55,9 @@ _STORED = ("rows_per_part", "want", "level", "digits", "tolerance", "engine", "i
 _ALL = "all"
 _PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
 _ROW_SWINGS = 25  # swings that take as long as what a row takes beside its steps
+# CPU seconds of a row of an audit, and what each swing adds
+_AUDITED_S = 0.3
+_AUDITED_SWING_S = 1.6e-3
 # CPU seconds of a sweep, above which a faster engine is compiled for the next one
 _WORTH_COMPILING_S = 1.0
 
@@ -196,6 +199,14 @@ class Request:
         """The number of parts."""
         return -(-self.table.count // self.rows_per_part)
 
+    @property
+    def rows_per_audited(self) -> float:
+        """About how many rows take as long as one row of the audit, by the default scene."""
+        if self.promotes:
+            return 1.0
+        audited_s = _AUDITED_S + _AUDITED_SWING_S * _swings(self.scene)
+        return audited_s / _row_s(batches()[self.engine], self.scene)
+
     def rows_of(self, part: int) -> range:
         """Return the rows of a part."""
         first = part * self.rows_per_part
@@ -319,11 +330,16 @@ def _check_release(scene: Scene, keys: Iterable[str]) -> None:
             raise InputError("--over", key, expected, "Or take a scene with the other kind.")
 
 
-def _row_s(engine: Batch, scene: Scene) -> float:
-    """Return the CPU seconds of a row in an engine, by its small swings and its sections."""
+def _swings(scene: Scene) -> float:
+    """Return the number of small swings of a scene's run."""
     start = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
     rate = float(start.ctx.norm(start.k.pull) ** 0.5)
-    swings = _ROW_SWINGS + float(scene.exact.t_end) * rate / (2 * math.pi)
+    return float(scene.exact.t_end) * rate / (2 * math.pi)
+
+
+def _row_s(engine: Batch, scene: Scene) -> float:
+    """Return the CPU seconds of a row in an engine, by its small swings and its sections."""
+    swings = _ROW_SWINGS + _swings(scene)
     work = sum(engine.section_work[abs(direction_of(word))] for word in scene.run.sections or ())
     return engine.swing_s * swings * (1 + work)
 

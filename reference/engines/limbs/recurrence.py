@@ -105,23 +105,13 @@ def _add_squares(s: LimbSeries, k: int, first: int, limb_count: int, drag: bool)
 
 
 @merged
-def _set_factors(s: LimbSeries, k: int, limb_count: int) -> None:
-    """Write the limbs of x, m, w, λ of order k, doubled, to `factors`: each in all lanes of a row."""
-    for q in range(s.first[k], limb_count):
-        at = LANES * (k * limb_count + q)
-        set_row(s.factors, PLANES * q, spread(DOUBLED * s.c[at + X]))
-        set_row(s.factors, PLANES * q + 1, spread(DOUBLED * s.c[at + M]))
-        set_row(s.factors, PLANES * q + 2, spread(DOUBLED * s.c[at + W]))
-        set_row(s.factors, PLANES * q + 3, spread(DOUBLED * s.c[at + TENSION]))
-
-
-@merged
 def _add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool) -> None:
-    """Add to the sums all products of order k, whose `factors` are set, with lower orders, eight of them at a time."""
+    """Add to the sums all products of order k with lower orders, eight of them at a time."""
     # the innermost loop of a run: all its values are to stay in registers
+    c = s.c
     planes = s.planes
     sums = s.sums
-    factors = s.factors
+    block = k * limb_count
     first = s.first[k]
     highest = 0  # the first limb that is used by any of the eight lower orders
     for j in range(0, max(min(k, order - k), 1), LANES):
@@ -135,15 +125,16 @@ def _add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool
             square = load(sums, row + 3 * WIDTH)
             for q in range(first, r - highest):
                 plane = (r - 1 - q) * PLANES * WIDTH + j
+                at = LANES * (block + q)
                 axial = load(planes, plane + 2 * WIDTH)
                 tension = load(planes, plane + 3 * WIDTH)
-                factor_w = get_row(factors, PLANES * q + 2)
-                factor_tension = get_row(factors, PLANES * q + 3)
+                factor_w = spread(c[at + W])
+                factor_tension = spread(c[at + TENSION])
 
                 x = plus_product(x, factor_tension, load(planes, plane))
-                x = plus_product(x, get_row(factors, PLANES * q), tension)
+                x = plus_product(x, spread(c[at + X]), tension)
                 m = plus_product(m, factor_tension, load(planes, plane + WIDTH))
-                m = plus_product(m, get_row(factors, PLANES * q + 1), tension)
+                m = plus_product(m, spread(c[at + M]), tension)
                 w = plus_product(w, factor_tension, axial)
                 w = plus_product(w, factor_w, tension)
                 if drag:
@@ -156,16 +147,16 @@ def _add_products(s: LimbSeries, k: int, order: int, limb_count: int, drag: bool
 
 @merged
 def _copy_to_planes(s: LimbSeries, k: int, first: int, limb_count: int) -> None:
-    """Copy x, m, w, λ of order k to the planes, for the products with higher orders."""
+    """Copy x, m, w, λ of order k, doubled, to the planes, for the products with higher orders."""
     c = s.c
     planes = s.planes
     for q in range(first, limb_count):
         at = LANES * (k * limb_count + q)
         plane = q * PLANES * WIDTH + k
-        planes[plane] = c[at + X]
-        planes[plane + WIDTH] = c[at + M]
-        planes[plane + 2 * WIDTH] = c[at + W]
-        planes[plane + 3 * WIDTH] = c[at + TENSION]
+        planes[plane] = DOUBLED * c[at + X]
+        planes[plane + WIDTH] = DOUBLED * c[at + M]
+        planes[plane + 2 * WIDTH] = DOUBLED * c[at + W]
+        planes[plane + 3 * WIDTH] = DOUBLED * c[at + TENSION]
         s.used[q] = k + 1
 
 
@@ -199,7 +190,6 @@ def taylor_coefficients(
         if not _note_first_limb(s.c, s.first, k + 1, max(low - 1, 0), limb_count):
             return False
 
-        _set_factors(s, k, limb_count)
         _add_products(s, k, order, limb_count, drag)
         if 2 * k < order:
             # last, as a vector that is loaded just after a part of it was stored must wait

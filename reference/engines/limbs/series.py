@@ -54,11 +54,9 @@ class LimbSeries(NamedTuple):
     Attributes:
         c: coefficients, (order + 1) blocks of `limb_count` rows.
         first: per order its first limb that is not zero.
-        planes: limb q of x, m, w, λ, each with all orders in a row.
+        planes: limb q of x, m, w, λ, doubled, each with all orders in a row.
         used: per limb the number of orders in which it may be other than zero.
         sums: limb r of λ x, λ m, λ w and w², each with all orders in a row, not carried.
-        factors: the limbs of x, m, w, λ of one order, doubled, each repeated in all eight lanes of
-            a row.
         twice: order 0, doubled.
         total, partners, other, scalar: working arrays.
     """
@@ -68,7 +66,6 @@ class LimbSeries(NamedTuple):
     planes: Array
     used: Counts
     sums: Array
-    factors: Array
     twice: Array
     total: Array
     partners: Array
@@ -95,7 +92,6 @@ def empty_series(order: int, limb_count: int) -> LimbSeries:
         planes=aligned(limb_count * PLANES * WIDTH),
         used=np.zeros(limb_count, dtype=np.int64),
         sums=aligned((limb_count + 1) * PLANES * WIDTH),
-        factors=aligned(PLANES * rows),
         twice=aligned(rows),
         total=aligned(rows),
         partners=aligned(rows),

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import io
+import sys
+import time
+
 import pytest
 
 from reference.commands.progress import Work, duration_in_words, progress
@@ -61,6 +65,41 @@ def test_coarse_ticks_count_down_between_them(clock):
     assert work.remaining_s() == pytest.approx(3 * 90.0)
 
 
+def test_runs_that_differ_are_expected_to_take_as_long_as_all_before(clock):
+    """Ten slow runs in 100 s, ten fast ones in a second: the next may be either."""
+    work = Work("paris", 60, "runs")
+    for done in range(11):
+        clock.now = 100.0 + 10.0 * done
+        work.move(done)
+    for done in range(10, 21):
+        clock.now = 200.0 + 0.1 * (done - 10)
+        work.move(done)
+    assert work.remaining_s() == pytest.approx(40 * 101.0 / 20)
+
+
+def test_what_comes_before_the_first_progress_tells_nothing_about_its_rate(clock):
+    """A sweep compiles for eight seconds, and then solves ten rows a second."""
+    work = Work("sweep", 100, "rows")
+    work.move(0)
+    clock.now = 108.0
+    work.begin("solving rows")
+    clock.now = 110.0
+    work.move(20)
+    assert work.remaining_s() == pytest.approx(8.0)
+
+
+def test_what_follows_a_piece_of_work_is_counted(clock):
+    """A sweep of 100 rows at ten a second, and an audit that takes as long as 40 rows."""
+    work = Work("sweep", 100, "rows", later=40)
+    for second in range(11):
+        clock.now = 100.0 + second
+        work.move(10.0 * second)
+    assert (work.remaining_s(), work.counted) == (pytest.approx(4.0), "100 of 100 rows")
+    clock.now = 112.0
+    work.move(120.0, item="auditing 2 rows")  # half of the audit
+    assert (work.remaining_s(), work.counted) == (pytest.approx(2.0), "100 of 100 rows")
+
+
 def test_work_that_starts_again_is_estimated_from_its_new_start(clock):
     work = Work("hard", 100.0)
     work.move(0.0)
@@ -97,6 +136,39 @@ def test_a_line_comes_after_twenty_seconds_and_then_at_twice_the_time(clock, cap
         "creeping: proving: about 9.3 minutes left, 7 % of 86,400 s after 43 s",
         "creeping: proving: about 8.6 minutes left, 14 % of 86,400 s after 87 s",
     ]
+
+
+class Terminal(io.StringIO):
+    """A terminal that keeps what is written to it."""
+
+    encoding = "utf-8"
+
+    def isatty(self) -> bool:
+        return True
+
+
+def written_in_two_seconds(terminal: Terminal) -> str:
+    """Return what a terminal shows from now on, at most for two seconds, until it shows something."""
+    start = len(terminal.getvalue())
+    end = time.perf_counter() + 2.0
+    while time.perf_counter() < end and len(terminal.getvalue()) == start:
+        time.sleep(0.02)
+    return terminal.getvalue()[start:]
+
+
+def test_a_terminal_gets_a_sign_of_life_while_files_are_written_after_the_work(monkeypatch):
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    with progress() as show:
+        solving = show("the truth", 60.0)
+        drawing = show("paris", 60.0)
+        solving(60.0)
+        drawing(60.0)
+        ACTIVITY.send("writing")
+        time.sleep(0.3)  # what was drawn before
+        shown = written_in_two_seconds(terminal)
+    assert "paris: writing" in shown
+    assert "the truth" not in shown
 
 
 def test_short_work_gets_no_line(clock, capsys):

@@ -377,6 +377,18 @@ def test_two_processes_give_what_one_gives(monkeypatch, paris):
     assert 0 < max(seen) <= 120
 
 
+def test_two_runs_report_by_what_they_cost(monkeypatch, paris):
+    """A run in double before one in many digits: half of the reports, and a tenth of the work."""
+    times = (Fraction(0), Fraction(4000))
+    cheap = Plan(paris.exact, "momentum", DOUBLE, times)
+    costly = replace(cheap, number=real(120))
+    seen: list[float] = []
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0}, raising=False)
+    run_both(cheap, costly, 10**9, seen.append)
+    assert seen == sorted(seen)
+    assert seen[len(seen) // 4] < 0.15 * 4000
+
+
 def test_an_error_in_the_second_process_arrives_in_the_first(paris):
     good = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)))
     lost = make_scene(pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})

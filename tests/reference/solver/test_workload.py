@@ -27,12 +27,12 @@ def test_parts_count_by_their_cost_and_are_named_while_they_go_on():
         workload.finish("proving")
         seeing(30.0)
         seeing(60.0)
-    assert told == [15.0, 15.0, 52.5, 60.0]
+    assert told == pytest.approx([15.0, 15.0, 52.5, 60.0])
     assert words == ["proving", "proving", "seeing"]
 
 
 @pytest.mark.skipif(usable_cores() < 2, reason="nothing is done in the background on one core")
-def test_work_in_the_background_counts_as_far_as_it_has_come(tmp_path):
+def test_of_work_done_at_the_same_time_the_slower_part_counts(tmp_path):
     told: list[float] = []
     words: list[str] = []
     workload = Workload(told.append, END_S, {"proving": 1.0, "confirming": 1.0})
@@ -45,7 +45,8 @@ def test_work_in_the_background_counts_as_far_as_it_has_come(tmp_path):
         (tmp_path / "go_on").touch()
         assert work.result() == "done"
         workload.part("proving")(60.0)
-    assert told == [18.0, 60.0]
+    # a half of the proof is done, but nine tenths of the confirmation are to come
+    assert told == pytest.approx([6.0, 60.0])
     assert words == ["proving and confirming"]
 
 
@@ -69,3 +70,24 @@ def test_a_proof_reports_its_parts_in_order_and_up_to_its_end():
     assert told == sorted(told) and told[0] >= 0 and told[-1] == pytest.approx(60.0)
     activities = [word for word in words if "compiling" not in word]
     assert activities[0] == "measuring how errors grow" and "proving" in activities
+
+
+def test_a_single_run_reports_its_pilot_too():
+    """heyoka's pilot is four runs, a third of the work."""
+    told: list[tuple[str, float]] = []
+    words = [""]
+    with ACTIVITY.heard_by(words.append):
+        solve(
+            "paris",
+            t_end=4000,
+            digits=25,
+            level="computed",
+            transits=False,
+            engine="heyoka",
+            report=lambda t: told.append((words[-1], t)),
+        )
+    pilot = [t for word, t in told if word == "measuring how errors grow"]
+    run = [t for word, t in told if word == "integrating"]
+    assert pilot == sorted(pilot) and run == sorted(run)
+    assert 400 < pilot[-1] < run[0]
+    assert run[-1] <= 4000

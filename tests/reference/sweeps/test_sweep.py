@@ -16,6 +16,7 @@ from reference.sweeps.part import solve_part
 from reference.sweeps.promote import Promoted, audited, promoted
 from reference.sweeps.request import Settings, request
 from reference.sweeps.sweep import checked_request
+from reference.system.channel import ACTIVITY
 
 MILLION = ["site.altitude=1:1000:1", "release.x=0.0001:0.1:0.0001"]
 LATITUDES = "site.latitude=-90,-30,0,48.846111,90"
@@ -206,6 +207,31 @@ def test_an_audit_finds_what_is_wrong_in_any_column(paris):
         columns[name][row] += amount
     found = audited(swept.request, lambda _: columns)
     assert (found.rows, found.wrong) == (count, tuple(range(1, count)))
+
+
+def test_an_audit_reports_every_row_and_is_not_named_by_what_the_solver_does(paris):
+    swept = swept_here(
+        paris.with_values(["run.t_end=30"]),
+        ["site.latitude=5:7:1"],
+        engine="heyoka",
+        audit=3,
+    )
+    columns = swept.columns()
+    told: list[int] = []
+    words: list[str] = []
+    with ACTIVITY.heard_by(words.append):
+        audited(swept.request, lambda _: columns, told.append)
+    assert (told[0], told[-1]) == (0, 3)
+    assert words == []
+
+
+def test_a_row_of_an_audit_takes_as_long_as_many_rows_of_the_sweep(paris):
+    """What the remaining time of a sweep counts for its audit: a row by the solver takes as long as any other."""
+    over = ["site.latitude=5:7:1"]
+    by_heyoka = request(paris, over, settings=Settings(engine="heyoka", audit=3))
+    by_solver = request(paris, over, settings=Settings(digits=25, audit=3))
+    assert by_heyoka.rows_per_audited > 10
+    assert by_solver.rows_per_audited == 1
 
 
 def test_a_row_that_the_solver_refuses_is_no_wrong_one():

@@ -17,7 +17,7 @@ from limbs_states import states
 from sampled import one_in
 from small_scenes import make_scene, run_in_limbs
 
-from reference import load
+from reference import load, load_scene
 from reference.engines.limbs.size import MOST_PREC
 from reference.engines.plan import Plan
 from reference.engines.registry import run
@@ -107,6 +107,40 @@ def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
         assert max(abs(one - other) for one, other in pairs) < Fraction(1, 10**34)
     assert ours.directions == golden.directions[:438]
     assert golden.transits["t"][437] < 3600 < golden.transits["t"][438]
+
+
+# x at 60 s and the time of the last transit, over 2**bits
+LAST_BITS = [
+    (
+        "paris",
+        144,
+        -36268305333018921436294805793869037690655526744389162058645504,
+        11832105910695557760604700125233616012909773165744633017656147968,
+    ),
+    (
+        "paris",
+        200,
+        -638038774934153857098053788874091864835509666482751358481416791084788350976,
+        208152608478190457627755250572351427114063419578974919742545156203598267285504,
+    ),
+    (
+        "laboratory_drag",
+        144,
+        14485087720797840423574155245337477419864573577410025676079104,
+        12181907731313432610532512113166317828255219244646870849549238272,
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "prec", "x", "t"), LAST_BITS, ids=[f"{name} {prec}" for name, prec, _, _ in LAST_BITS]
+)
+def test_a_dataset_made_again_has_the_last_bits_that_it_had(name, prec, x, t):
+    """Sums of products are exact in any order, so that a faster loop changes no bit of any dataset."""
+    scene = load_scene(name).with_values(["run.t_end=60"])
+    ours = run_in_limbs(scene, prec, scene.exact.grid)
+    assert ours.grid.values[-1][0] == x
+    assert ours.transits.values[-1][0] == t
 
 
 def test_a_quarter_period_is_that_of_the_elliptic_integral():
