@@ -85,10 +85,10 @@ class Piece:
         """The polynomials p'."""
         return [f.derivative() for f in self.p]
 
-    def values(self, s: arb, first: int = 0) -> tuple[Vector, Vector]:
-        """Return balls of p(s) and p'(s), of this from a component on."""
-        p = [f(s) / self.unit for f in self.p]
-        v = [f(s) / self.unit for f in self.v[first:]]
+    def values(self, s: arb | fmpz, first: int = 0) -> tuple[Vector, Vector]:
+        """Return balls of p(s) and p'(s), of this from a component on; where `s` is an integer, from integers."""
+        p = [arb(f(s)) / self.unit for f in self.p]
+        v = [arb(f(s)) / self.unit for f in self.v[first:]]
         return p, v
 
     @cached_property
@@ -154,11 +154,10 @@ def pieces(balls: SceneBalls, steps: Iterable[TaylorStep]) -> list[Piece]:
             continue
         alike = list(group)
         tables = np.stack([piece.rows.table for piece in alike])
-        p = _polynomials_of(tables[:, :3])
-        norms = _norms_of(tables, alike)
-        for piece, of_p, of_defects in zip(alike, p, norms, strict=True):
-            piece.p = of_p
-            piece.norms = of_defects
+        p = _polynomials_of(np.concatenate(tables[:, :3]))
+        for k, norms in enumerate(_norms_of(tables, alike)):
+            alike[k].p = p[3 * k : 3 * k + 3]
+            alike[k].norms = norms
     return result
 
 
@@ -193,25 +192,29 @@ def polynomials(rows: Any, part: slice) -> list[fmpz_poly]:
     if not isinstance(rows, Digits):
         return [fmpz_poly(row) for row in rows[part]]
 
-    [polynomials] = _polynomials_of(rows.table[None, part])
-    return polynomials
+    return _polynomials_of(rows.table[part])
 
 
-def _polynomials_of(tables: Any) -> list[list[fmpz_poly]]:
-    """Return polynomials from the digits of their coefficients, shape (steps, polynomials, L, orders)."""
+def _polynomials_of(tables: Any) -> list[fmpz_poly]:
+    """Return polynomials from the digits of their coefficients, shape (polynomials, L, orders)."""
     # two digits are one number of 44 bits, which 64 hold: half as many polynomials to add
     tables = tables.astype(np.int64)
-    odd = tables.shape[2] % 2
-    highest = tables[:, :, :odd]
-    joined = (tables[:, :, odd::2] << DIGIT_BITS) + tables[:, :, odd + 1 :: 2]
-    words = np.concatenate([highest, joined], 2).tolist()
-    return [[_polynomial(of_one) for of_one in of_step] for of_step in words]
+    odd = tables.shape[1] % 2
+    highest = tables[:, :odd]
+    joined = (tables[:, odd::2] << DIGIT_BITS) + tables[:, odd + 1 :: 2]
+    words = np.concatenate([highest, joined], 1)
+
+    # the high words of high orders are 0
+    _, _, orders = words.shape
+    lengths = (words.any(axis=0) * np.arange(1, orders + 1)).max(axis=1).tolist()
+    rows = [words[:, k, :length].tolist() for k, length in enumerate(lengths)]
+    return [_polynomial(of_words) for of_words in zip(*rows, strict=True)]
 
 
-def _polynomial(pairs: list[list[int]]) -> fmpz_poly:
-    """Return a polynomial from the pairs of digits of its coefficients, highest first."""
-    pair_unit = fmpz(1) << 2 * DIGIT_BITS
+def _polynomial(words: Iterable[list[int]]) -> fmpz_poly:
+    """Return a polynomial from the words of its coefficients, the highest first."""
+    word_unit = fmpz(1) << 2 * DIGIT_BITS
     polynomial = fmpz_poly()
-    for pair in pairs:
-        polynomial = polynomial * pair_unit + fmpz_poly(pair)
+    for coefficients in words:
+        polynomial = polynomial * word_unit + fmpz_poly(coefficients)
     return polynomial

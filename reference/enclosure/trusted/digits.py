@@ -2,8 +2,8 @@
 
 Nothing here is a float, and no sum can overflow: `check` refuses what could. A digit of row q stands for
 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
-`multiply`, `sums_of_step` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, unless `audit` checks
-what they return.
+`multiply`, `sums_of_step` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed,
+unless `audit` checks what they return.
 
 | name                       | symbol                                                         |
 |----------------------------|----------------------------------------------------------------|
