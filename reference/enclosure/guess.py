@@ -24,7 +24,6 @@ def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
     """
     leaf = leaves[len(leaves) // 2]
     form = leaf.form
-    # values of these take half the time of those of integers
     f = arb_poly(form.value.polynomial)
     rate = arb_poly(form.rate.polynomial)
 
@@ -33,13 +32,14 @@ def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
         s = _in_few_bits(form, f, rate, middle)
         slope = rate(s).mid()
 
-    value = f(s)
+    # in all bits the polynomial itself takes two thirds of the time of the balls
+    value = form.value.polynomial(s)
     width = form.value.off.rad() * form.unit
     for _ in range(ctx.prec // SHORT):
         if abs(value) < NEGLIGIBLE * width:
             break
         s = (s - value / slope).mid()
-        value = f(s)
+        value = form.value.polynomial(s)
 
     away = MARGIN * (width + abs(value)) / abs(slope)
     before = form.centre + (s - away) * form.piece.constants.h

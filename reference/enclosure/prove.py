@@ -11,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
-from itertools import chain, pairwise
+from itertools import chain, islice, pairwise
 from math import ceil
 from time import process_time
 from typing import Any, NamedTuple
@@ -40,6 +40,7 @@ MAX_BITS = 2048
 LOOK_BITS = 128  # for a first look at a scene, before its proof
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision
+BATCH = 8  # steps that are read together
 LEAST_RAISE = 8  # bits from one attempt to the next
 USELESS = 2**12  # an attempt ends at once if a state is this many times wider than requested
 LN_2 = 0.693
@@ -173,8 +174,9 @@ def _attempt(request: _Request, plan: ProofPlan, approximant: Approximant) -> En
 
         # the same polynomials, each ended at the double below its end
         all_steps = on_doubles(all_steps)
-    for step in until(all_steps, request.times[-1]):
-        attempt.advance(step)
+    remaining = until(all_steps, request.times[-1])
+    while batch := list(islice(remaining, BATCH)):
+        attempt.advance(batch)
     return attempt.finish()
 
 
@@ -202,14 +204,22 @@ class _PointAttempt:
         self.checked_states = 0
         self.cpu_s = 0.0
 
-    def advance(self, step: TaylorStep) -> None:
-        """Prove the next step."""
+    def advance(self, batch: list[TaylorStep]) -> None:
+        """Prove the next steps."""
+        begun = process_time()
+        self.course.read(batch)
+        self.cpu_s += process_time() - begun
+        for step in batch:
+            self._take(step)
+
+    def _take(self, step: TaylorStep) -> None:
+        """Prove the next step of those that were read."""
         begun = process_time()
         if self.columns:
             widths = [_log(z) for z in self.course.bound.z]
-            self.course.advance(step, self.columns.propose(step, widths))
+            self.course.take(self.columns.propose(step, widths))
         else:
-            self.course.advance(step)
+            self.course.take()
         if self.fit:
             self.fit.add()
         self.cpu_s += process_time() - begun

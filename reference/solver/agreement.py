@@ -342,7 +342,8 @@ def _with_errors(
 
 
 def _floats(numbers: FixedPoint) -> Array:
-    return np.array([float(x) for x in numbers.fractions()], dtype=np.float64)
+    unit = 1 << numbers.bits
+    return np.array([value / unit for value in numbers.values], dtype=np.float64)
 
 
 def _in_units(values: list[int], bits: int) -> Array:

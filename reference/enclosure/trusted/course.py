@@ -4,13 +4,14 @@ Who calls `advance` proposes steps and columns, and can do no harm: an exception
 result only for a run that is complete (THEOREM.md, section 9). Times are in s, states in m and m/s.
 """
 
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 from weakref import WeakSet
 
 from ...numbers.taylor_step import TaylorStep
 from .balls import demand
-from .defect import Piece
+from .defect import Piece, pieces
 from .radius import Radius
 from .shapes import XDOT, Proposal, Proved, State
 from .six_columns import Columns
@@ -37,6 +38,7 @@ class Course:
     ) -> None:
         self.balls = balls
         self.times = tuple(times)
+        self.pieces = list[Piece]()  # that were read, and wait
         self.states = list[State]()
         self.open = True
         self.bound: Any = Columns(balls) if columns else Radius(balls)
@@ -46,10 +48,23 @@ class Course:
         self.followers = list[Any]()
 
     def advance(self, step: TaylorStep, *proposal: Proposal) -> None:
-        """Take the next step, and columns if it is proved by them."""
+        """Read a step and take it, with columns if it is proved by them."""
+        self.read([step])
+        self.take(*proposal)
+
+    def read(self, steps: Iterable[TaylorStep]) -> None:
+        """Read the next steps, together: that is faster than one after another."""
         demand(self.open, "the run is closed: a step failed")
         self.open = False
-        covered = self.bound.advance(Piece(self.balls, step), *proposal)
+        self.pieces.extend(pieces(self.balls, steps))
+        self.open = True
+
+    def take(self, *proposal: Proposal) -> None:
+        """Take the next of the steps that were read, and columns if it is proved by them."""
+        demand(self.open, "the run is closed: a step failed")
+        demand(bool(self.pieces), "no step was read")
+        self.open = False
+        covered = self.bound.advance(self.pieces.pop(0), *proposal)
         while len(self.states) < len(self.times):
             time = self.times[len(self.states)]
             if time > covered.piece.end:

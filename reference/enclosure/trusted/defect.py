@@ -16,8 +16,10 @@ the rod, so that all of this has the unit 1. Norms are those on |s| <= 1.
 | `N`                | N, the largest degree of a component of p, or 1        |      |
 """
 
+from collections.abc import Iterable
 from fractions import Fraction
 from functools import cached_property
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,15 +72,23 @@ class Piece:
         self.constants = scaled(balls, step.h, step.bits)
         self.unit = fmpz(1) << step.bits
         self.rows = rows
-        self.p = polynomials(rows, slice(3))
-        self.v = [f.derivative() for f in self.p]
         self.begin = step.centre + step.h * step.low
         self.end = step.centre + step.h * step.high
 
-    def values(self, s: arb, first: int = 0) -> tuple[Vector, Vector]:
-        """Return balls of p(s) and p'(s), of this from a component on."""
-        p = [f(s) / self.unit for f in self.p]
-        v = [f(s) / self.unit for f in self.v[first:]]
+    @cached_property
+    def p(self) -> list[fmpz_poly]:
+        """The polynomials p."""
+        return polynomials(self.rows, slice(3))
+
+    @cached_property
+    def v(self) -> list[fmpz_poly]:
+        """The polynomials p'."""
+        return [f.derivative() for f in self.p]
+
+    def values(self, s: arb | fmpz, first: int = 0) -> tuple[Vector, Vector]:
+        """Return balls of p(s) and p'(s), of this from a component on; where `s` is an integer, from integers."""
+        p = [arb(f(s)) / self.unit for f in self.p]
+        v = [arb(f(s)) / self.unit for f in self.v[first:]]
         return p, v
 
     @cached_property
@@ -110,10 +120,8 @@ class Piece:
     def norms(self) -> DefectNorms:
         """The norms of d, τ, p' and τ': by sums of digits, or of others by FLINT's polynomials."""
         if isinstance(self.rows, Digits):
-            from .digits import norms
-
-            bounds = norms(self.rows.table, self.constants.integers, audit=self.balls.audit)
-            return DefectNorms(*bounds)
+            [norms] = _norms_of(self.rows.table[None], [self])
+            return norms
         return DefectNorms(*(total(f, 2 * self.step.bits) for f in self._exact_polynomials()))
 
     def _exact_polynomials(self) -> list[fmpz_poly]:
@@ -138,6 +146,35 @@ class Piece:
         return [d_x, d_m, d_w, tau, one * x1, one * m1, one * w1, tau.derivative()]
 
 
+def pieces(balls: SceneBalls, steps: Iterable[TaylorStep]) -> list[Piece]:
+    """Return the pieces of steps; what follows from digits of one shape is computed in one pass."""
+    result = [Piece(balls, step) for step in steps]
+    for shape, group in groupby(result, key=_shape):
+        if shape is None:
+            continue
+        alike = list(group)
+        tables = np.stack([piece.rows.table for piece in alike])
+        p = _polynomials_of(np.concatenate(tables[:, :3]))
+        for k, norms in enumerate(_norms_of(tables, alike)):
+            alike[k].p = p[3 * k : 3 * k + 3]
+            alike[k].norms = norms
+    return result
+
+
+def _shape(piece: Piece) -> Any:
+    """Return the shape of the table of digits; None for coefficients that come as integers."""
+    return piece.rows.table.shape if isinstance(piece.rows, Digits) else None
+
+
+def _norms_of(tables: Any, pieces: list[Piece]) -> list[DefectNorms]:
+    """Return the norms of pieces from their tables of digits, shape (pieces, 4, L, orders)."""
+    from .digits import norms
+
+    integers = [piece.constants.integers for piece in pieces]
+    audit = pieces[0].balls.audit
+    return [DefectNorms(*bounds) for bounds in norms(tables, integers, audit=audit)]
+
+
 def _frozen(step: TaylorStep) -> TaylorStep:
     """Return a copy of a step, whose coefficients are read once."""
     rows: Any = step.coefficients
@@ -155,16 +192,29 @@ def polynomials(rows: Any, part: slice) -> list[fmpz_poly]:
     if not isinstance(rows, Digits):
         return [fmpz_poly(row) for row in rows[part]]
 
+    return _polynomials_of(rows.table[part])
+
+
+def _polynomials_of(tables: Any) -> list[fmpz_poly]:
+    """Return polynomials from the digits of their coefficients, shape (polynomials, L, orders)."""
     # two digits are one number of 44 bits, which 64 hold: half as many polynomials to add
-    table = rows.table[part].astype(np.int64)
-    odd = table.shape[1] % 2
-    highest = table[:, :odd]
-    joined = (table[:, odd::2] << DIGIT_BITS) + table[:, odd + 1 :: 2]
-    pair_unit = fmpz(1) << 2 * DIGIT_BITS
-    result = list[fmpz_poly]()
-    for pairs in np.concatenate([highest, joined], 1).tolist():
-        polynomial = fmpz_poly()
-        for pair in pairs:
-            polynomial = polynomial * pair_unit + fmpz_poly(pair)
-        result.append(polynomial)
-    return result
+    tables = tables.astype(np.int64)
+    odd = tables.shape[1] % 2
+    highest = tables[:, :odd]
+    joined = (tables[:, odd::2] << DIGIT_BITS) + tables[:, odd + 1 :: 2]
+    words = np.concatenate([highest, joined], 1)
+
+    # the high words of high orders are 0
+    _, _, orders = words.shape
+    lengths = (words.any(axis=0) * np.arange(1, orders + 1)).max(axis=1).tolist()
+    rows = [words[:, k, :length].tolist() for k, length in enumerate(lengths)]
+    return [_polynomial(of_words) for of_words in zip(*rows, strict=True)]
+
+
+def _polynomial(words: Iterable[list[int]]) -> fmpz_poly:
+    """Return a polynomial from the words of its coefficients, the highest first."""
+    word_unit = fmpz(1) << 2 * DIGIT_BITS
+    polynomial = fmpz_poly()
+    for coefficients in words:
+        polynomial = polynomial * word_unit + fmpz_poly(coefficients)
+    return polynomial

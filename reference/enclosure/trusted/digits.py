@@ -2,8 +2,8 @@
 
 Nothing here is a float, and no sum can overflow: `check` refuses what could. A digit of row q stands for
 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
-`multiply` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, unless `audit` checks
-what they return.
+`multiply`, `sums_of_step` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed,
+unless `audit` checks what they return.
 
 | name                       | symbol                                                         |
 |----------------------------|----------------------------------------------------------------|
@@ -19,7 +19,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from flint import arb, fmpz, fmpz_poly
+from flint import arb, fmpz, fmpz_mat
 
 from ...numbers.taylor_step import DIGIT_BITS
 from ...system.machine_code import kept
@@ -68,27 +68,38 @@ LINEAR = (
 )
 
 
-def check(rows: Any, constants: Any) -> int:
-    """Return a bound of the products' sums in `norms`; raise ArithmeticError if a sum or factor may overflow."""
-    _, count, orders = rows.shape
-    p = _largest(rows[:TENSION])
-    tension = _largest(rows[TENSION])
-    constant = _largest(constants)
+def check(tables: Any, constants: Any) -> list[int]:
+    """Return for each step a bound of the products' sums in `norms`; raise ArithmeticError if one may overflow.
 
-    products: int = count * orders * p * (tension + 5 * constant + 3 * p)  # (6.9)
-    linear = (orders**2 * p + constant + (1 << DIGIT_BITS)) << DIGIT_BITS  # (6.10)
-    demand(products + linear < 1 << MOST_BITS, "digits may overflow")  # (6.11)
-    # k c_k, twice a constant or a digit of λ
-    demand(
-        2 * max(orders * p, tension, constant) < 1 << FACTOR_BITS, "digits may overflow"
-    )  # (6.12)
-    return products
+    Args:
+        tables: digits of x, m, w, λ of each step, shape (steps, 4, L, orders).
+        constants: those of the step's constants, shape (steps, 5, L).
+    """
+    _, _, count, orders = tables.shape
+    of_p = _largest(tables[:, :TENSION])
+    of_tension = _largest(tables[:, TENSION])
+    of_constants = _largest(constants)
+
+    bounds = []
+    for p, tension, constant in zip(of_p, of_tension, of_constants, strict=True):
+        products = count * orders * p * (tension + 5 * constant + 3 * p)  # (6.9)
+        linear = (orders**2 * p + constant + (1 << DIGIT_BITS)) << DIGIT_BITS  # (6.10)
+        demand(products + linear < 1 << MOST_BITS, "digits may overflow")  # (6.11)
+        # k c_k, twice a constant or a digit of λ
+        demand(
+            2 * max(orders * p, tension, constant) < 1 << FACTOR_BITS, "digits may overflow"
+        )  # (6.12)
+        bounds.append(products)
+    return bounds
 
 
-def _largest(digits: Any) -> int:
-    """Return the size of the largest digit."""
+def _largest(digits: Any) -> list[int]:
+    """Return the size of the largest digit of each step."""
+    of_step = digits.reshape(len(digits), -1)
     # as integers without a limit: -digits.min() itself may overflow
-    return max(int(digits.max()), -int(digits.min()))
+    highest = of_step.max(axis=1).tolist()
+    lowest = of_step.min(axis=1).tolist()
+    return [max(high, -low) for high, low in zip(highest, lowest, strict=True)]
 
 
 @kept()
@@ -113,13 +124,27 @@ def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
 
 @kept()
 def sums(series: Any, constants: Any, more: int) -> Any:
-    """Return the sums over all orders of the digits of |c|, by rows: of d, of τ, of p', and of n |c| of τ.
+    """Return the sums of digits of each step, shape (steps, 8, rows).
 
-    The second array has the digits of all c after the carry: by rows, results and orders.
+    The second array has the digits of all c after the carry, shape (steps, rows, 7, columns).
+    """
+    steps, _, count, width = series.shape
+    rows = TOP_ROWS + count + more
+    absolute = np.zeros((steps, RESULTS + 1, rows), np.int64)
+    digits = np.zeros((steps, rows, RESULTS, 2 * (width - BLOCK)), np.int64)
+    for step in range(steps):
+        sums_of_step(series[step], constants[step], digits[step], absolute[step])
+    return absolute, digits
+
+
+@kept()
+def sums_of_step(series: Any, constants: Any, digits: Any, absolute: Any) -> None:
+    """Add up over all orders the digits of |c|, by rows: of d, of τ, of p', and of n |c| of τ.
+
+    `digits` takes the digits of all c after the carry: by rows, results and orders.
     """
     # a kernel: one array of digits, from the products to their sums
     _, count, width = series.shape
-    digits = np.zeros((TOP_ROWS + count + more, RESULTS, 2 * (width - BLOCK)), np.int64)
     to = digits[TOP_ROWS:]
 
     # λ p and |p|²
@@ -140,7 +165,6 @@ def sums(series: Any, constants: Any, more: int) -> Any:
             for n in range(width):
                 to[t, D_X + i, n] += (n + 1) * to[t, P_RATE_X + i, n + 1]
 
-    absolute = np.zeros((RESULTS + 1, len(digits)), np.int64)
     for i in range(RESULTS):
         # carry, from the lowest row up
         for t in range(len(digits) - 1, 0, -1):
@@ -154,7 +178,6 @@ def sums(series: Any, constants: Any, more: int) -> Any:
                 absolute[i, t] += x
                 if i == TAU:
                     absolute[TAU_RATE, t] += n * x
-    return absolute, digits
 
 
 @lru_cache(maxsize=64)  # steps of the same length follow each other
@@ -168,36 +191,47 @@ def split(count: int, *integers: fmpz) -> Any:
     return np.array(rows)
 
 
-def norms(rows: Any, integers: Any, more: int = 1, audit: Any = None) -> list[arb]:
-    """Return sums of |c| of d (three components), of τ, of p' (three components) and of τ' (n |c|).
+def norms(tables: Any, integers: Any, more: int = 1, audit: Any = None) -> list[list[arb]]:
+    """Return for each step sums of |c| of d (three components), of τ, of p' (three components) and of τ' (n |c|).
 
     Args:
-        rows: digits of x, m, w, λ, shape (4, L, orders).
-        integers: ω, ω², γ, c_m, c_w over 2^(22 L - 1).
+        tables: digits of x, m, w, λ of each step, shape (steps, 4, L, orders).
+        integers: of each step ω, ω², γ, c_m, c_w over 2^(22 L - 1).
         more: rows of a product that are summed beyond L; what is left out is bounded, with L - 1 it is nothing.
         audit: a `SumsAudit`, which takes what compiled code returned.
     """
-    _, count, orders = rows.shape
-    constants = split(count, *integers, fmpz(1) << DIGIT_BITS * count - 1)
-    products = check(rows, constants[:UNIT])
+    steps, _, count, orders = tables.shape
+    one = fmpz(1) << DIGIT_BITS * count - 1
+    constants = np.stack([split(count, *of_step, one) for of_step in integers])
+    products = check(tables, constants[:, :UNIT])
 
-    series = np.zeros((8, count, orders + 2 * BLOCK), np.int32)
+    series = np.zeros((steps, 8, count, orders + 2 * BLOCK), np.int32)
     inner = series[..., BLOCK:-BLOCK]
-    inner[: TENSION + 1] = rows
-    inner[X_RATE : W_RATE + 1, :, :-1] = np.arange(1, orders) * rows[:TENSION, :, 1:]
-    inner[ONE, :, 0] = constants[UNIT]
+    inner[:, : TENSION + 1] = tables
+    inner[:, X_RATE : W_RATE + 1, :, :-1] = np.arange(1, orders) * tables[:, :TENSION, :, 1:]
+    inner[:, ONE, :, 0] = constants[:, UNIT]
     absolute, digits = sums(series, constants, more)
     if audit is not None:
-        audit.take(CompiledSums(rows, constants, absolute, digits, count + more))
-    lowest_first = absolute[:, ::-1].tolist()
+        for of_step in zip(tables, constants, absolute, digits, strict=True):
+            audit.take(CompiledSums(*of_step, product_rows=count + more))
 
-    # (6.13): what is left out of at most 2 O coefficients, in units of the last row
-    cut = 0
-    if more < count - 1:
-        cut = (4 * orders * products >> DIGIT_BITS) + 1
     exponent = fmpz(2 - DIGIT_BITS * (count + 1 + more))
-    bounds = list[arb]()
-    for i, digit_sums in enumerate(lowest_first):
-        rest = cut * 2 * orders if i == TAU_RATE else cut
-        bounds.append(arb((fmpz_poly(digit_sums)(1 << DIGIT_BITS) + rest, exponent)))
+    bounds = []
+    for totals, of_products in zip(joined(absolute), products, strict=True):
+        # (6.13): what is left out of at most 2 O coefficients, in units of the last row
+        cut = 0
+        if more < count - 1:
+            cut = (4 * orders * of_products >> DIGIT_BITS) + 1
+        cuts = [cut] * RESULTS + [cut * 2 * orders]
+        sums_of_all = zip(totals, cuts, strict=True)
+        bounds.append([arb((total + rest, exponent)) for total, rest in sums_of_all])
     return bounds
+
+
+def joined(digits: Any) -> list[list[fmpz]]:
+    """Return the integers whose digits are along the last axis, highest first; shape (steps, numbers, rows)."""
+    steps, numbers, rows = digits.shape
+    weights = [fmpz(1) << DIGIT_BITS * row for row in reversed(range(rows))]
+    integers = fmpz_mat(steps * numbers, rows, digits.ravel().tolist()) * fmpz_mat(rows, 1, weights)
+    entries = integers.entries()
+    return [entries[i : i + numbers] for i in range(0, len(entries), numbers)]

@@ -19,7 +19,7 @@ In the time of a step, lengths over that of the rod; η is the same in physical 
 from fractions import Fraction
 from typing import NamedTuple
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpz
 
 from .balls import SHORT, Vector, add, ball, cross, demand, size, times, upper
 from .defect import Piece
@@ -76,7 +76,9 @@ class CarriedState:
 
 def _point(piece: Piece, s: Fraction) -> PhasePoint:
     """Return p and K = p × (p' + Ω₀ × p) at `s`, K in 1/s."""
-    p, v = piece.values(ball(s))
+    # most steps end at ±1, where integers are faster than balls
+    at = ball(s) if s.denominator > 1 else fmpz(s.numerator)
+    p, v = piece.values(at)
     K = cross(p, add(v, cross(piece.constants.omega_0, p)))
     return PhasePoint(p, times(1 / piece.constants.h, K))
 

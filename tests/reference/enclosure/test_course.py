@@ -101,6 +101,35 @@ def test_a_closed_run_takes_no_further_step():
         one.advance(second)
 
 
+def test_steps_that_are_read_together_are_proved_as_one_after_another():
+    proposed = [in_digits(step) for step in steps(PARIS, TIMES[-1])]
+    one = Course(SceneBalls(PARIS, proposed[0].bits + 64), TIMES, columns=False, words=WORDS)
+    for k in range(0, len(proposed), 3):
+        one.read(proposed[k : k + 3])
+        for _ in proposed[k : k + 3]:
+            one.take()
+    proved = one.finish()
+    alone = course(proposed).finish()
+    assert (proved.states, proved.zeros) == (alone.states, alone.zeros)
+
+
+def test_a_step_that_cannot_be_read_closes_the_run_with_those_before_it():
+    first, second, *_ = proposed = list(steps(PARIS, TIMES[-1]))
+    one = Course(SceneBalls(PARIS, 192), TIMES, columns=False, words=())
+    with pytest.raises(ArithmeticError, match="must lie in"):
+        one.read([first, second._replace(low=second.high)])
+    with pytest.raises(ArithmeticError, match="closed"):
+        one.take()
+    with pytest.raises(ArithmeticError, match="closed"):
+        one.read(proposed)
+
+
+def test_a_step_that_was_not_read_is_not_taken():
+    one = Course(SceneBalls(PARIS, 192), TIMES, columns=False, words=())
+    with pytest.raises(ArithmeticError, match="no step was read"):
+        one.take()
+
+
 def swallowed(proposed, times, words, inputs=PARIS):
     """Drive a run on through every exception; return what it says at the end."""
     one = Course(SceneBalls(inputs, 400), times, False, words)

@@ -12,7 +12,7 @@ from flint import fmpz_poly
 pytest.importorskip("numba")
 
 from reference.enclosure.trusted.audit import SumsAudit
-from reference.enclosure.trusted.defect import Piece, polynomials
+from reference.enclosure.trusted.defect import Piece, pieces, polynomials
 from reference.enclosure.trusted.digits import check, norms, split
 from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import DIGIT_BITS, Digits
@@ -60,12 +60,32 @@ def test_all_rows_give_the_integers_of_flint_and_fewer_a_bound(seed):
 
     audit = SumsAudit()
     _, count, _ = rows.shape
-    all_rows = norms(rows, piece.constants.integers, count - 1, audit)
-    fewer_rows = norms(rows, piece.constants.integers, audit=audit)
+    integers = [piece.constants.integers]
+    [all_rows] = norms(rows[None], integers, count - 1, audit)
+    [fewer_rows] = norms(rows[None], integers, audit=audit)
     audit.check()  # raises if it finds a fault
     for own, exact, bound in zip(by_flint, all_rows, fewer_rows, strict=True):
         assert exact == own
         assert bound >= own
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_steps_read_together_have_the_norms_and_polynomials_that_each_has_alone(seed):
+    rng = Random(seed)
+    balls = rng.choice(WORLDS)
+    tables = [table(rng) for _ in range(3)]
+    # steps of one shape beside each other and apart, and one that does not come as digits
+    rows = [Digits(tables[k]) for k in (0, 0, 1, 2, 2, 0)]
+    rows[1].table = -tables[0]
+    rows.insert(2, tuple(Digits(tables[0])))
+    bits = [DIGIT_BITS * len(x.table[0]) - 1 if isinstance(x, Digits) else 400 for x in rows]
+    steps = [unit_step(*own) for own in zip(bits, rows, strict=True)]
+
+    together = pieces(balls, steps)
+    for piece, step in zip(together, steps, strict=True):
+        alone = Piece(balls, step)
+        assert piece.p == alone.p
+        assert [*map(str, piece.norms)] == [*map(str, alone.norms)]
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -81,27 +101,29 @@ def test_digits_of_an_integer_are_that_integer(n):
 
 @pytest.mark.parametrize("spoil", [2**30, -(2**31), 2**31 - 1])
 def test_digits_whose_sums_may_overflow_are_refused(spoil):
-    rows = np.full((4, 9, 90), MOST, np.int32)
-    constants = np.zeros((5, 9), np.int64)
-    check(rows, constants)
-    for place in ((0, 0, 0), (3, 8, 89)):
-        bad = rows.copy()
+    tables = np.full((2, 4, 9, 90), MOST, np.int32)
+    constants = np.zeros((2, 5, 9), np.int64)
+    check(tables, constants)
+    for place in ((0, 0, 0, 0), (1, 3, 8, 89)):
+        bad = tables.copy()
         bad[place] = spoil
         with pytest.raises(ArithmeticError, match="overflow"):
             check(bad, constants)
     with pytest.raises(ArithmeticError, match="overflow"):
-        check(rows, constants + 2**40)
+        check(tables, constants + 2**40)
 
 
 def test_sums_that_may_reach_two_to_the_62_are_refused_and_none_below():
-    rows, constants = np.full((4, 64, 64), 1 << 20, np.int32), np.zeros((5, 64), np.int64)
+    tables = np.full((3, 4, 64, 64), 1 << 20, np.int32)
+    constants = np.zeros((3, 5, 64), np.int64)
     # 64 * 64 products with a digit of λ and three squares; two derivatives, c, and the 1 of τ
     least = (1 << 62) - (((64**2 << 20) + (1 << DIGIT_BITS)) << DIGIT_BITS)
-    rows[3, 5, 7] = least // (64**2 << 20) - (3 << 20)
+    tables[1, 3, 5, 7] = least // (64**2 << 20) - (3 << 20)
     with pytest.raises(ArithmeticError, match="overflow"):
-        check(rows, constants)
-    rows[3, 5, 7] -= 1
-    assert check(rows, constants) < least
+        check(tables, constants)
+    tables[1, 3, 5, 7] -= 1
+    other, largest, another = check(tables, constants)
+    assert other == another < largest < least
 
 
 def test_digits_hand_out_the_integers_that_they_stand_for():
