@@ -212,6 +212,9 @@ def _generate(options: _GenerateOptions) -> None:
         _generate_all(options)
         return
     chosen("--engine", options.engine, _ENGINES)
+    from .cautions import warn
+
+    warn(options.scene, str(options.scene_word))
     if options.widths:
         _generate_ranges(options, options.widths)
     else:
