@@ -122,6 +122,16 @@ class IntegrationError(UnreachableError):
     """The integrator stopped, warned, or contradicted itself; a failed run returns no numbers."""
 
 
+class BoxTooWideError(UnreachableError):
+    """Inputs are too uncertain for a proof of the whole run; it holds up to `holds_s`, in s."""
+
+    def __init__(self, holds_s: float, advice: str) -> None:
+        self.holds_s = holds_s
+        super().__init__(
+            f"The box of inputs is too wide: it holds up to t = {holds_s:.4g} s.", advice
+        )
+
+
 class BeyondDoublesError(UnreachableError):
     """A number of a scene is too large for computations in binary64, such as steps and sizes."""
 

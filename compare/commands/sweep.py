@@ -124,6 +124,10 @@ def sweep(options: SweepOptions) -> None:
         from ..report.sweep_report import check
 
         check(request, options.plot)
+    if options.scene_word is not None:
+        from reference.commands.cautions import warn
+
+        warn(request.scene, options.scene_word, tuple(request.table.values))
 
     if options.scene_word is not None and options.engine is None and options.cluster is None:
         from reference.sweeps.background import compile_for_the_next

@@ -18,6 +18,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
+from reference.commands.layout import Column, table
 from reference.plain_text import plain_lines
 
 from ..candidates.text import is_number
@@ -225,17 +226,17 @@ class PageTable:
             ]
             yield f"<tr{kind}{anchor}>{''.join(cells)}</tr>"
 
-    def lines(self) -> list[str]:
-        """Return lines of text, the titles first; numbers are aligned right."""
-        rows = [list(self.columns), *self._texts()]
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        sides = [">" if kind == "number" else "<" for kind in self.columns.values()]
-        lines = []
-        for row in rows:
-            cells = zip(row, sides, widths, strict=True)
-            padded = [f"{cell:{side}{width}}" for cell, side, width in cells]
-            lines.append("  ".join(padded).rstrip())
-        return lines
+    def lines(self, keys: int = 1) -> list[str]:
+        """Return lines of text, the titles first; numbers are aligned right.
+
+        Columns that do not fit into a line follow below, after the first `keys` columns once more.
+        """
+        texts = self._texts()
+        columns = []
+        for place, (title, kind) in enumerate(self.columns.items()):
+            cells = [row[place] for row in texts]
+            columns.append(Column([title], cells, is_number=kind == "number"))
+        return table(columns, keys, indent="")
 
     def csv(self) -> str:
         """Return CSV: a header line, doubles with all their digits, an empty field where there is no value.

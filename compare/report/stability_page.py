@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from reference import load_scene
+from reference.commands.layout import paragraph as as_lines
 from reference.plain_text import shortened
 from reference.status import Status
 
@@ -263,10 +264,15 @@ def text_table(document: dict[str, Any]) -> str:
         rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
     numbers = ("setting", "asked", *(status.words for status in present))
     table = PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
-    lines = [*headlines(cells), f"load: {busy(cells)}", "", *table.lines()]
-    lines += ["", *advice(present)]
-    if runs:
-        lines += ["", *laws(runs)]
+    lines = []
+    for text in headlines(cells):
+        lines += as_lines(text, hanging="  ")
+    lines += ["", *table.lines(keys=2), ""]
+    for text in advice(present):
+        lines += as_lines(text, hanging="  ")
+    for text in laws(runs):
+        lines += ["", *as_lines(text, hanging="  ")]
+    lines += ["", *as_lines(f"load: {busy(cells)}", hanging="  ")]
     return "\n".join(lines)
 
 

@@ -8,9 +8,11 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from statistics import median
-from textwrap import wrap
 from typing import Any
 
+from reference.commands.layout import Column
+from reference.commands.layout import paragraph as as_lines
+from reference.commands.layout import table as columns_as_lines
 from reference.plain_text import shortened
 from reference.status import Status
 from reference.system.documents import texts_of
@@ -215,33 +217,39 @@ def observed(order: ObservedOrder | None) -> str:
 def _orders_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
     """Return declared and observed orders as lines of text; a user's program declares none."""
     declared = orders(rows, bound_m)
+    if not declared:
+        return []
     usual = {order.method: order.formulation for order in reversed(declared)}
-    texts = []
+    cells = []
     for order in declared:
-        other = "" if usual[order.method] == order.formulation else f" ({order.formulation})"
-        texts.append(f"{order.method}{other} {order.declared or _ABSENT}: {observed(order)}")
-    return ["", *wrap(f"Order, declared: observed. {'; '.join(texts)}", 100)] if texts else []
+        other = "" if usual[order.method] == order.formulation else order.formulation
+        cells.append((order.method, other, order.declared or _ABSENT, observed(order)))
+    columns = {"order of": "", "": "", "declared": "number", "observed": "number"}
+    return ["", *PageTable(columns, cells).lines()]
 
 
 def text_table(document: dict[str, Any]) -> str:
-    """Return rows, reasons of failures and main results as text for a terminal of 100 columns."""
+    """Return main results, rows, and reasons of failures as text for a terminal."""
     rows = rows_of(document)
     reference = document["reference"]
     bound_m = float(reference["bound_m"])
     heading = f"{document['scene']}: {document['t_end']:g} s"
-    lines = [
-        f"{heading}, reference {reference['level']}, bound {bound_m:.1e} m",
-        f"load: {busy(rows)}",
-        "",
-        *_measured_as_text(rows, bound_m),
-        "",
+    lines = as_lines(f"{heading}, reference {reference['level']}, bound {bound_m:.1e} m")
+    lines.append("")
+    for sentence in sentences(document):
+        lines += as_lines(sentence, hanging="  ")
+    legend = (
         f"* on the Pareto front   {_PART_MARK} extrapolated from a part of the span, so without its "
-        "error (see --limit)",
-    ]
+        "error (see --limit)"
+    )
+    lines += ["", *_measured_as_text(rows, bound_m), "", *as_lines(legend)]
     statuses = {row.status for row in rows if row.failed}
     if statuses:
-        lines += ["", "Failed:", *_failed_as_text(rows), "", *advice(statuses)]
-    lines += [*_orders_as_text(rows, bound_m), "", *sentences(document)]
+        lines += ["", "Failed:", *_failed_as_text(rows), ""]
+        for text in advice(statuses):
+            lines += as_lines(text, hanging="  ")
+    lines += _orders_as_text(rows, bound_m)
+    lines += ["", *as_lines(f"load: {busy(rows)}", hanging="  ")]
     return "\n".join(lines) + "\n"
 
 
@@ -257,20 +265,33 @@ def _measured_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
             errors = (number(row.error_m), transit_error(row), number(row.h_drift))
             costs_shown = (cost(row), count(row.rhs_evaluations))
             table.append((mark, curve.label, setting(row), *errors, *costs_shown))
-    numbers = ("setting", "error m", "transits s", "h drift", "CPU s", "calls")
-    columns = {"": "", "method": ""} | dict.fromkeys(numbers, "number")
-    return PageTable(columns, table).lines()
+    heads: tuple[tuple[str, ...], ...] = (
+        ("",),
+        ("method",),
+        ("setting",),
+        ("error", "m"),
+        ("transits", "s"),
+        ("h drift",),
+        ("CPU", "s"),
+        ("calls",),
+    )
+    columns = []
+    for place, head in enumerate(heads):
+        cells = [row[place] for row in table]
+        columns.append(Column(head, cells, is_number=place > 1))
+    # the mark, the method and its setting
+    return columns_as_lines(columns, keys=3, indent="")
 
 
 def _failed_as_text(rows: Sequence[Row]) -> list[str]:
     """Return the rows that failed as lines of text, with their reasons."""
-    table = []
+    lines = []
     for curve in curves(rows):
         for row in curve.rows:
             if row.failed:
-                table.append(("", curve.label, setting(row), row.status.words, row.reason))
-    columns = {"": "", "method": "", "setting": "number", "status": "", "reason": ""}
-    return PageTable(columns, table).lines()
+                run = f"{curve.label} {setting(row)}".rstrip()
+                lines += as_lines(f"{run}: {row.status.words}: {row.reason}", "  ", hanging="  ")
+    return lines
 
 
 def setting(row: Row | Cell) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reference import InputError
+from reference.commands.layout import Column, paragraph, table
 from reference.errors import counted
 from reference.numbers.precision import Array, digits_that_hold
 from reference.scenes.scene import unit_of
@@ -17,7 +18,6 @@ from reference.status import Status
 
 from .drawing import BLUE, RULE, check_target, picture, sheet
 from .folder import write_file
-from .page import PageTable
 
 if TYPE_CHECKING:
     from reference import Swept
@@ -25,14 +25,19 @@ if TYPE_CHECKING:
 
 _ROWS_OF_JSON = 10_000  # no more are printed if there is a folder
 _STATE_COLUMNS = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s")
+# columns of the table: what each is called, and its unit; then those of sections
 _SHOWN = {
-    "swing_hz": "frequency (Hz)",
-    "precession_deg_per_h": "precession (°/h)",
-    "transits": "transits",
-    "max_angle_deg": "angle (°)",
-    "position_error_m": "estimated error (m)",
-}  # columns of the table, and their heads; then those of sections
-_OF_SECTION = {"passages": "passages", "t_first_s": "first (s)", "interval_s": "interval (s)"}
+    "swing_hz": ("frequency", "Hz"),
+    "precession_deg_per_h": ("precession", "°/h"),
+    "transits": ("transits", ""),
+    "max_angle_deg": ("angle", "°"),
+    "position_error_m": ("estimated", "error, m"),
+}
+_OF_SECTION = {
+    "passages": ("passages", ""),
+    "t_first_s": ("first", "s"),
+    "interval_s": ("interval", "s"),
+}
 _LABELS = {
     "swing_hz": "frequency of the swing in Hz",
     "precession_deg_per_h": "precession in °/h, east to north",
@@ -103,42 +108,64 @@ def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
 def text(swept: Swept, out: Path | None) -> str:
     """Return the table of a sweep or its folder; then findings of an audit, statuses and costs."""
     if out is None:
-        lines = _table(swept).lines()
+        lines = [*_table(swept), *_failed_lines(swept), ""]
     else:
         lines = [f"{out}: {counted(swept.request.parts, 'part')} in Parquet"]
     lines += _audit_lines(swept)
     by_status = ", ".join(f"{count} {Status(word).words}" for word, count in swept.counts.items())
-    lines.append(f"{counted(len(swept), 'row')}: {by_status}")
-    lines.append(_cost_line(swept))
+    lines += paragraph(f"{counted(len(swept), 'row')}: {by_status}")
+    lines += paragraph(_cost_line(swept))
     return "\n".join(lines)
 
 
-def _table(swept: Swept) -> PageTable:
-    """Return the rows as a table: values of the fields, and results or why there are none."""
+def _table(swept: Swept) -> list[str]:
+    """Return the rows as lines: values of the fields, and results, or dashes if there are none."""
     request = swept.request
+    texts = [list(request.table.texts(number).values()) for number in range(len(swept))]
+    table_columns = []
+    for place, key in enumerate(request.table.values):
+        # the table that a field is in is left out
+        name = key.rpartition(".")[2]
+        table_columns.append(Column([name, unit_of(key)], [row[place] for row in texts]))
+
     heads = _heads(request)
-    columns = {column.name: column for column in request.columns}
-    shown = [columns[name] for name in heads if name in columns]
-    rows = []
+    rows = list(swept.rows())
+    errors = {column.name: column.error for column in request.columns}
+    for column, head in heads.items():
+        if column in errors:
+            cells = [_result(row, column, errors[column]) for row in rows]
+            table_columns.append(Column(head, cells))
+    return table(table_columns, keys=len(request.table.values), indent="")
+
+
+def _result(row: dict[str, Any], name: str, error: str | None) -> str:
+    """Return a result of a row, or a dash if it has none."""
+    if row["status"] != Status.OK.value:
+        return "–"
+    return _cell(row[name], row.get(error) if error else None)
+
+
+def _failed_lines(swept: Swept) -> Iterator[str]:
+    """Yield why rows have no results."""
+    names = list(swept.request.table.values)
+    if len(swept) > swept.counts.get(Status.OK.value, 0):
+        yield ""
     for number, row in enumerate(swept.rows()):
-        values = list(request.table.texts(number).values())
         if row["status"] == Status.OK.value:
-            results = [_cell(row[column.name], row.get(column.error)) for column in shown]
-            rows.append((*values, *results, ""))
-        else:
-            empty = [""] * len(shown)
-            rows.append((*values, *empty, f"{row['status']}: {row['reason']}"))
-    names = [*request.table.values, *(heads[column.name] for column in shown)]
-    return PageTable({**dict.fromkeys(names, "number"), "": ""}, rows)
+            continue
+        texts = swept.request.table.texts(number)
+        values = ", ".join(f"{name} = {texts[name]}" for name in names)
+        yield from paragraph(f"{values}: {row['status']}: {row['reason']}", hanging="  ")
 
 
-def _heads(request: Request) -> dict[str, str]:
+def _heads(request: Request) -> dict[str, tuple[str, ...]]:
     """Return the heads of the table by the names of the columns, in order."""
-    heads = dict(_SHOWN)
+    heads: dict[str, tuple[str, ...]] = dict(_SHOWN)
     if request.level == "enclosed":
-        heads["position_error_m"] = "bound (m)"
+        heads["position_error_m"] = ("proved", "error, m")
     for word in request.sections:
-        heads |= {f"{word}: {name}": f"{word}: {head}" for name, head in _OF_SECTION.items()}
+        for name, head in _OF_SECTION.items():
+            heads[f"{word}: {name}"] = (word, *head)
     return heads
 
 
@@ -151,7 +178,7 @@ def _audit_lines(swept: Swept) -> list[str]:
     if audit.refused:
         findings += f"; {len(audit.refused)} that the solver refuses"
     rows = counted(audit.rows, "row")
-    return [f"{rows} solved again in 28 digits: {findings}, CPU {swept.audit_s:.2f} s"]
+    return paragraph(f"{rows} solved again in 28 digits: {findings}, CPU {swept.audit_s:.2f} s")
 
 
 def _cost_line(swept: Swept) -> str:

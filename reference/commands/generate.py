@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,9 +13,10 @@ import typer
 from ..engines import AUTO, engine_names
 from ..errors import InputError, counted, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS
-from ..scenes.scene import load_scene
+from ..scenes.scene import load_scene, unit_of
 from ..scenes.shipped import scene_ids
 from ..system.channel import ACTIVITY
+from .layout import Fact, echo, facts, heading, paragraph
 from .options import Conflict, as_command, refuse_conflicts
 from .progress import Move, Show, progress
 from .terminal import (
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
 _WRITING = "writing and checking the files"
 _WRITING_SHARE = 0.15  # of the time that solving takes
 _ENGINES = (AUTO, *engine_names())
+_NEXT = "Next: `foucault verify {}` checks it."
 
 _SCENE = scene_argument(value="[SCENE]")
 _OUT = option(
@@ -215,6 +218,9 @@ def _generate(options: _GenerateOptions) -> None:
         _generate_all(options)
         return
     chosen("--engine", options.engine, _ENGINES)
+    from .cautions import warn
+
+    warn(options.scene, str(options.scene_word))
     if options.widths:
         _generate_ranges(options, options.widths)
     else:
@@ -285,21 +291,30 @@ def _print_dataset(solution: Solution, folder: Path, as_json: bool) -> None:
         emit(measured)
         return
 
-    times = counted(len(solution.times), "grid time")
-    rows = f"{times}, {counted(measured['transits'], 'transit')}"
-    if measured["possible"]:
-        rows += f", {measured['possible']} undecided"
-    confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
-    digits = solution.scene.run.digits
-    typer.echo(f"{folder}: {rows}, {digits} digits, {solution.level}{confirmed}")
-
+    heading(f"{folder}: written")
+    typer.echo("")
+    echo(facts(_dataset_facts(solution, measured)))
+    typer.echo("")
+    echo(paragraph(_NEXT.format(folder)))
     if solution.not_checked:
         unseen = "The proof finds all transits; no run with event detection confirms them"
         typer.echo(f"{unseen}: {solution.not_checked}", err=True)
+
+
+def _dataset_facts(solution: Solution, measured: dict[str, Any]) -> Iterator[Fact]:
+    """Yield what was written, and how it was made."""
+    yield "grid", counted(len(solution.times), "row")
+    undecided = f", {measured['possible']} undecided" if measured["possible"] else ""
+    yield "transits", f"{measured['transits']}{undecided}"
+    for word, zeros in solution.sections.items():
+        yield word, counted(len(zeros.table), "passage")
+    yield "digits", str(solution.scene.run.digits)
+    confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
+    yield "level", f"{solution.level}{confirmed}"
+    yield "positions", f"within {measured['bound_m']} m"
     run = solution.run
-    how = f"{run.formulation}, {run.number}, {run.steps} steps"
-    typer.echo(f"every position within {measured['bound_m']} m; {how}")
-    typer.echo(f"CPU {solution.cpu_s:.2f} s: {_cpu_times(solution)}")
+    yield "run", f"{run.formulation}, {run.number}, {counted(run.steps, 'step')}"
+    yield "CPU", f"{solution.cpu_s:.2f} s: {_cpu_times(solution)}"
 
 
 def _cpu_times(solution: Solution) -> str:
@@ -358,16 +373,46 @@ def _print_ranges(ranges: Ranges, folder: Path, as_json: bool) -> None:
         emit({"dataset": ranges_id(ranges), "out": str(folder), "period_s": period, **counts})
         return
 
-    box = ", ".join(f"{name} ±{width}" for name, width in ranges.uncertain.items())
-    rows = f"{counted(counts['grid'], 'grid time')}, {counted(counts['transits'], 'transit')}"
-    typer.echo(f"{folder}: {rows}, for every {box}: enclosed")
-    if ranges.possible:
-        typer.echo(f"intervals that may hold more transits: {counts['possible']}")
+    heading(f"{folder}: written")
+    typer.echo("")
+    echo(facts(_ranges_facts(ranges, period)))
+    typer.echo("")
+    echo(paragraph(_NEXT.format(folder)))
+
+
+def _ranges_facts(ranges: Ranges, period: list[str] | None) -> Iterator[Fact]:
+    """Yield what was proved and written, for which inputs, and how wide it is."""
+    for name, width in ranges.uncertain.items():
+        yield "for every", f"{name} ±{width} {unit_of(name)}".rstrip()
+    yield "grid", counted(len(ranges.times), "row")
+    yield "transits", _count(len(ranges.transits), len(ranges.possible))
     for word, passages in ranges.sections.items():
-        line = f"passages of {word}: {len(passages.table)}"
-        if passages.possible:
-            line += f", intervals that are left open: {len(passages.possible)}"
-        typer.echo(line)
+        yield word, _count(len(passages.table), len(passages.possible))
+    yield "level", "enclosed"
     if period:
         low, high = period
-        typer.echo(f"period between {low} and {high} s; CPU {ranges.proof.cpu_s:.2f} s")
+        yield "period", f"{low} to {high} s"
+    yield "positions", _width_at_the_end(ranges)
+    yield "CPU", f"{ranges.proof.cpu_s:.2f} s"
+
+
+def _count(decided: int, possible: int) -> str:
+    """Return how many zeros are decided, and how many intervals are left open."""
+    if not possible:
+        return str(decided)
+    return f"{decided}, and {counted(possible, 'interval')} that may hold more"
+
+
+def _width_at_the_end(ranges: Ranges) -> str:
+    """Return how closely the last position is known, in words where that says nothing."""
+    from ..numbers.columns import POSITION
+
+    widths = []
+    for name in POSITION:
+        low, high = ranges.grid.exact(name)[-1]
+        widths.append(high - low)
+    widest = max(widths)
+    text = f"{float(widest):.2g} m wide at the end"
+    if widest > ranges.scene.exact.length:
+        return f"useless: {text}, wider than the cord is long"
+    return text

@@ -29,6 +29,7 @@ from ..status import Status
 from ..system.imports import needed
 from ..system.workers import Pool, WorkerDied, as_done, usable_cores
 from ..system.workspace import clear
+from .layout import echo, paragraph
 from .progress import progress
 from .terminal import check_workers, emit, stoppable
 
@@ -155,7 +156,7 @@ def generate_all(
                 rows.append(row)
                 move(len(rows), item=row["scene"])
                 if not as_json:
-                    typer.echo(_line(row))
+                    echo(paragraph(_line(row), hanging="  "))
     rows.sort(key=lambda row: str(row["dataset"]))
     _print_counts(len(every), rows, as_json)
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-import typer
+from collections.abc import Iterator
 
-from ..scenes.scene import load_scene
+from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import WITHOUT_FUNCTION, scene_ids
+from .layout import echo, facts, paragraph
 from .terminal import AsJson, emit
+
+_NEXT = (
+    "`foucault show SCENE` prints a scene's inputs, its motion, and why it is difficult; "
+    "`foucault scenes --json` all fields and flags."
+)
 
 
 def scenes(as_json: AsJson = False) -> None:
@@ -15,9 +21,19 @@ def scenes(as_json: AsJson = False) -> None:
     if as_json:
         emit({"scenes": [scene.model_dump(exclude_none=True) for scene in every]})
         return
-    width = max((len(scene.id) for scene in every), default=0)
-    for scene in every:
-        flags = f"  [{', '.join(scene.flags)}]" if scene.flags else ""
-        megabytes = WITHOUT_FUNCTION.get(scene.id)
-        lacking = f"  (without a golden function, which takes {megabytes} MB)" if megabytes else ""
-        typer.echo(f"{scene.id:{width}}  {scene.title}{flags}{lacking}")
+    echo(_lines(every))
+
+
+def _lines(every: list[Scene]) -> Iterator[str]:
+    """Yield the lines that list scenes: their ids and titles."""
+    yield from facts((scene.id, _title(scene)) for scene in every)
+    yield ""
+    yield from paragraph(_NEXT)
+
+
+def _title(scene: Scene) -> str:
+    """Return a scene's title, and that it ships without its golden function where it does."""
+    megabytes = WITHOUT_FUNCTION.get(scene.id)
+    if megabytes is None:
+        return scene.title
+    return f"{scene.title} (without a golden function, which takes {megabytes} MB)"

@@ -2,33 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
 from ..errors import FoucaultError, InputError, NotInstalledError, UnreachableError
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings
+from .layout import echo, facts, heading, paragraph
 from .options import Conflict, as_command, refuse_conflicts
+from .scene_text import derived_facts, input_facts, title_of
 from .template import scene_file
 from .terminal import (
     AsJson,
     Assignments,
+    Sections,
     Uncertain,
     emit,
     option,
+    replacements,
     scene_argument,
     widths_by_name,
 )
+
+if TYPE_CHECKING:
+    from .passages import Asked
 
 # what the letters of each form of the equations mean
 _FORMS = {
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
+_LEFT_OUT = "Left out: they need pip install 'foucault-reference[enclose]'."
+_NEXT = "Next: `foucault generate {0}` solves it; `foucault score {0} FILE` judges a program by it."
 _DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 _SCENE = scene_argument(
@@ -45,6 +54,12 @@ _PROVED = option(
 _SENSITIVITY = option(
     "--sensitivity", "Also show how many digits the flow costs between release and end."
 )
+_PASSAGE = option(
+    "--passage",
+    "Also show when this passage of each section comes (without sections: this transit); 50=±0.1 asks which "
+    "uncertain input to know better for an interval of so many seconds; may be repeated.",
+    "N",
+)
 
 
 @dataclass(frozen=True)
@@ -56,6 +71,8 @@ class _ShowOptions:
     equations: Annotated[bool, _EQUATIONS] = False
     sensitivity: Annotated[bool, _SENSITIVITY] = False
     proved: Annotated[bool, _PROVED] = False
+    section: Sections = None
+    passage: Annotated[list[str] | None, _PASSAGE] = None
     set_: Assignments = None
     uncertain: Uncertain = None
     as_json: AsJson = False
@@ -63,7 +80,7 @@ class _ShowOptions:
 
 _CONFLICTS = (
     Conflict(
-        "--equations --sensitivity --uncertain --json --proved",
+        "--equations --sensitivity --uncertain --json --proved --section --passage",
         "together with --template",
         lambda options: options.template,
     ),
@@ -85,120 +102,203 @@ def _show(options: _ShowOptions) -> None:
     if options.template:
         typer.echo(scene_file(scene), nl=False)
         return
-    if scene is None:
+    if scene is None or options.scene_word is None:
         expected = "a scene's id or the path of a TOML file"
         raise InputError("SCENE", "nothing", expected, "`foucault scenes` lists the ids.")
-    document = _document(scene, options)
+    from .cautions import warn
+
+    parts = _parts(scene, options)
+    warn(scene, options.scene_word)
     if options.as_json:
+        document: dict[str, Any] = {}
+        for part in parts:
+            document |= part.document
         emit(document)
         return
-    for line in _document_lines(scene, document):
-        typer.echo(line)
+    for number, part in enumerate(parts):
+        if number:
+            typer.echo("")
+        heading(part.title)
+        typer.echo("")
+        echo(part.lines)
+    typer.echo("")
+    echo(paragraph(_NEXT.format(options.scene_word)))
 
 
 command = as_command(_ShowOptions, _show)
+
+
+class _Part(NamedTuple):
+    """A part of what is shown: for --json, and for people."""
+
+    document: dict[str, Any]
+    title: str
+    lines: Iterable[str]
 
 
 def _scene(options: _ShowOptions) -> Scene | None:
     """Return the scene to show, its fields replaced; None if none was named."""
     if options.scene_word is None:
         return None
-    return load_scene(options.scene_word, options.set_ or ())
+    sections = ",".join(options.section) if options.section else None
+    fields = {"--section": ("run.sections", sections)}
+    return load_scene(options.scene_word, replacements(options.set_, fields))
 
 
-def _document(scene: Scene, options: _ShowOptions) -> dict[str, Any]:
-    """Return all that is shown of a scene, as --json prints it."""
-    document: dict[str, Any] = {
-        **scene.model_dump(exclude_none=True),
-        "flag_meanings": flag_meanings(scene.flags),
-        "derived": _derived(scene),
-        "motion": _motion(scene),
-    }
-    if options.equations:
-        document |= _compiled(scene)
-    if options.sensitivity:
-        from ..solver.sensitivity import digits_lost
-
-        document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
-    if options.proved:
-        from .proved import proved_swing
-
-        document["proved"] = proved_swing(scene)
-    if widths := widths_by_name(options.uncertain, scene):
-        document["ranges"] = _ranges(scene, widths, asked=bool(options.uncertain))
-    return document
-
-
-def _document_lines(scene: Scene, document: dict[str, Any]) -> Iterator[str]:
-    """Yield the lines that show a document to people."""
-    yield f"{scene.id}: {scene.title}"
-    if scene.source:
-        yield f"source: {scene.source}"
-    for flag, meaning in document["flag_meanings"].items():
-        yield f"{flag}: {meaning}"
-    yield f"inputs are read as: {scene.inputs}"
-    yield from _table_lines(scene, document["derived"])
-    yield _motion_line(document["motion"])
-    if "proved" in document:
-        from .proved import swing_line
-
-        yield swing_line(document["proved"])
-    if "ranges" in document:
-        from .proved import ranges_lines
-
-        yield from ranges_lines(document["ranges"])
-    if "digits_lost" in document:
-        lost = document["digits_lost"]
-        yield f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result"
-        yield f"  the inputs have to be right to n + {lost:.1f}"
-    if "equations" in document:
-        yield from _equations_lines(document)
-
-
-def _table_lines(scene: Scene, derived: dict[str, str]) -> Iterator[str]:
-    """Yield a line for each table: inputs by section, their widths, derived quantities."""
-    from ..dataset.sheets import scene_inputs
-
-    tables = scene_inputs(scene)
-    if scene.uncertain:
-        tables["uncertain"] = scene.uncertain
-    tables["derived"] = derived
-    for name, table in tables.items():
-        yield f"[{name}] " + ", ".join(f"{key} = {value}" for key, value in table.items())
-
-
-def _equations_lines(document: dict[str, Any]) -> Iterator[str]:
-    """Yield the compiled equations, the terms left out, and what is confirmed of a proof."""
-    form = document["formulation"]
-    run = f"{document['engine']}, {document['number']}"
-    yield f"compiled by generate ({run}; {form} form: {_FORMS[form]}):"
-    for line in document["equations"]:
-        yield f"  {line}"
-    yield "left out:"
-    for line in document["left_out"] or ["nothing"]:
-        yield f"  {line}"
-    if document["confirmed"]:
-        yield f"of the proof heyoka confirms: {document['confirmed']}"
-
-
-def _ranges(scene: Scene, widths: dict[str, str], asked: bool) -> dict[str, Any]:
-    """Return what is proved for uncertain inputs, or the reason why nothing can be proved.
+def _parts(scene: Scene, options: _ShowOptions) -> Iterator[_Part]:
+    """Yield what is shown of a scene, one part after the other, since some take long.
 
     Raises:
-        InputError: a width is wrong; or nothing can be proved here, and an option asked for it.
-        UnreachableError: the box is too wide.
+        InputError: an option, which is found out before the first part.
+        UnreachableError: a proof that was asked for is out of reach.
     """
+    from .passages import asked_passages
+
+    asked = asked_passages(options.passage)
+    widths = widths_by_name(options.uncertain, scene)
+    if widths is None:
+        _check_no_width(options.passage)
+    else:
+        from ..solver.uncertain import widths_of
+
+        widths_of(scene, widths)
+    _check_installed(scene, options)
+    return _checked_parts(scene, options, asked, widths)
+
+
+def _check_installed(scene: Scene, options: _ShowOptions) -> None:
+    """Refuse what was asked for and cannot be proved here, before anything is shown.
+
+    Raises:
+        InputError: python-flint is not installed.
+    """
+    from ..solver.choice import need_flint
+    from ..solver.uncertain import need_proof
+
+    if options.uncertain and widths_by_name(options.uncertain, scene):
+        need_proof()
+    if options.proved or (options.equations and scene.run.level == "enclosed"):
+        need_flint()
+
+
+def _check_no_width(passages: list[str] | None) -> None:
+    """Refuse a wanted width of a passage where all inputs are exact.
+
+    Raises:
+        InputError: there is one.
+    """
+    for word in passages or ():
+        if "=" in word:
+            expected = "the number of a passage alone: no input is uncertain"
+            raise InputError("--passage", word, expected, "Give widths by --uncertain.")
+
+
+def _checked_parts(
+    scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str] | None
+) -> Iterator[_Part]:
+    """Yield what is shown of a scene; the options are right."""
+    from .motion_text import motion_facts
+
+    yield _inputs_part(scene, options)
+    motion = _motion(scene)
+    title = (
+        f"Motion over {motion['over_s']} s, errors estimated" if "over_s" in motion else "Motion"
+    )
+    yield _Part({"motion": motion}, title, facts(motion_facts(motion)))
+
+    wants_passages = bool(options.section or options.passage)
+    if wants_passages and widths is None:
+        from .passages import computed_passages, passage_facts
+
+        passages = computed_passages(scene, asked, motion.get("period_s"))
+        yield _Part(
+            {"passages": passages}, "Passages, errors estimated", facts(passage_facts(passages))
+        )
+    if options.sensitivity:
+        yield _sensitivity_part(scene)
+    if options.equations:
+        yield _equations_part(_compiled(scene))
+    if options.proved:
+        from .proved import proved_swing
+        from .proved_text import swing_lines
+
+        proved = proved_swing(scene)
+        title = f"Proved over {proved['over_s']} s"
+        yield _Part({"proved": proved}, title, swing_lines(proved))
+    if widths is not None:
+        yield _ranges_part(scene, options, asked, widths)
+
+
+def _inputs_part(scene: Scene, options: _ShowOptions) -> _Part:
+    """Return the inputs of a scene, and what follows from them."""
+    from .cautions import cautions
+
+    meanings = flag_meanings(scene.flags)
+    derived = _derived(scene)
+    document: dict[str, Any] = {
+        **scene.model_dump(exclude_none=True),
+        "flag_meanings": meanings,
+        "derived": derived,
+        "warnings": cautions(scene, str(options.scene_word)),
+    }
+    lines = [*facts(input_facts(scene, meanings)), "", *facts(derived_facts(derived))]
+    return _Part(document, title_of(scene), lines)
+
+
+def _sensitivity_part(scene: Scene) -> _Part:
+    """Return how many digits the flow costs."""
+    from ..solver.sensitivity import digits_lost
+
+    lost = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
+    text = (
+        f"The flow costs {lost:.1f} digits between release and end: "
+        f"for n digits of a result the inputs have to be right to n + {lost:.1f}."
+    )
+    return _Part({"digits_lost": lost}, "Sensitivity", paragraph(text, "  "))
+
+
+def _equations_part(compiled: dict[str, Any]) -> _Part:
+    """Return the compiled equations, the terms left out, and what is confirmed of a proof."""
+    form = compiled["formulation"]
+    pairs = [
+        ("engine", f"{compiled['engine']}, {compiled['number']}"),
+        ("form", f"{form}: {_FORMS[form]}"),
+    ]
+    for line in compiled["left_out"] or ["nothing"]:
+        pairs.append(("left out", line))
+    if compiled["confirmed"]:
+        pairs.append(("confirmed", f"by heyoka, of the proof: {compiled['confirmed']}"))
+    lines = facts(pairs)
+    for equation in compiled["equations"]:
+        lines += paragraph(equation, "  ", hanging="      ")
+    return _Part(compiled, "Equations that generate compiles", lines)
+
+
+def _ranges_part(
+    scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str]
+) -> _Part:
+    """Return what is proved for uncertain inputs, or the reason why nothing can be proved."""
+    ranges = _ranges(scene, options, asked, widths)
+    if "over_s" not in ranges:
+        return _Part({"ranges": ranges}, "Ranges", paragraph(_LEFT_OUT, "  "))
+    from .proved_text import ranges_lines, ranges_title
+
+    return _Part({"ranges": ranges}, ranges_title(ranges), ranges_lines(ranges))
+
+
+def _ranges(
+    scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str]
+) -> dict[str, Any]:
+    """Return what is proved for uncertain inputs, or the reason why nothing can be proved."""
     from ..solver.uncertain import need_proof
 
     try:
         need_proof()
     except NotInstalledError as error:
-        if asked:
-            raise
         return {"reason": str(error)}
     from .proved import proved_ranges
 
-    return proved_ranges(scene, widths)
+    return proved_ranges(scene, widths, asked, wants_passages=options.passage is not None)
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:
@@ -282,19 +382,3 @@ def _motion(scene: Scene) -> dict[str, Any]:
         motion["full_turn_h"] = seen.full_turn_h
         motion["full_turn_error_h"] = seen.full_turn_error_h
     return motion | {"left_out": left_out(seen.reason, seen.may_stand_still)}
-
-
-def _motion_line(motion: dict[str, Any]) -> str:
-    """Return the motion in a line; each number has the digits that its error leaves."""
-    if "reason" in motion:
-        return f"[motion] no period: {motion['reason']}"
-    from ..numbers.precision import digits_that_hold
-    from ..solver.swing import left_out_texts
-
-    names = [name for name in motion if name not in ("over_s", "left_out")]
-    texts = []
-    for name, error_name in zip(names[::2], names[1::2], strict=True):
-        digits = digits_that_hold(motion[name], motion[error_name])
-        texts.append(f"{name} = {digits}")
-    texts += left_out_texts(motion["left_out"])
-    return f"[motion, over {motion['over_s']} s, errors estimated] {', '.join(texts)}"

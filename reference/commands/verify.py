@@ -10,6 +10,7 @@ import typer
 
 from ..errors import InputError
 from ..scenes.shipped import golden_root, seals
+from .layout import echo, heading, paragraph
 from .progress import Show, progress
 from .terminal import AsJson, completion, emit, option, refuse
 
@@ -95,11 +96,10 @@ def _checked_dataset(folder: Path, recompute: bool, show: Show) -> _Check:
 
 
 def _print(folder: Path, check: _Check) -> None:
-    """Print the verdict on a folder, then its problems and notes."""
-    verdict = "WRONG" if check.problems else "; ".join(["ok", *check.undecided])
-    typer.echo(f"{folder}: {verdict}")
-    for line in [*check.problems, *check.notes]:
-        typer.echo(f"  {line}")
+    """Print the verdict on a folder, then its problems, what was not decided, and notes."""
+    heading(f"{folder}: {'WRONG' if check.problems else 'ok'}")
+    for line in [*check.problems, *check.undecided, *check.notes]:
+        echo(paragraph(line, "  ", hanging="  "))
 
 
 def _row(folder: Path, check: _Check) -> dict[str, Any]:

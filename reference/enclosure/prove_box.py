@@ -9,7 +9,7 @@ from time import process_time
 
 from flint import arb
 
-from ..errors import UnreachableError
+from ..errors import BoxTooWideError
 from ..numbers.taylor_step import TaylorStep
 from ..numbers.zeros import XDOT
 from .prove import SCENE_GUARD_BITS, demand_rest_positions, plan_for, until
@@ -60,7 +60,7 @@ def enclose_box(
         derivatives: whether they are wanted; else they are used if one radius grows too much.
 
     Raises:
-        UnreachableError: the box is too wide; says up to which time it holds.
+        BoxTooWideError: the box is too wide; says up to which time it holds.
     """
     attempt: _BoxAttempt | None = None
     begun = process_time()
@@ -80,10 +80,8 @@ def enclose_box(
                 progress(float(attempt.reached / latest))
         proved = attempt.finish()
     except (ArithmeticError, ValueError):
-        holds = float(attempt.reached / attempt.windows.pace.high) if attempt else 0.0
-        raise UnreachableError(
-            f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE
-        ) from None
+        holds_s = float(attempt.reached / attempt.windows.pace.high) if attempt else 0.0
+        raise BoxTooWideError(holds_s, ADVICE) from None
 
     radius = interval(windows.course.bound.eta * balls.length).high
     # these balls hold the scene's own

@@ -190,15 +190,6 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
     return {"full_turn_h": "the plane may not turn at all"} if still else {}
 
 
-def left_out_texts(reasons: dict[str, str]) -> list[str]:
-    """Return what `left_out` gives as words of a line."""
-    texts = []
-    for reason in dict.fromkeys(reasons.values()):
-        names = [name for name in reasons if reasons[name] == reason]
-        texts.append(f"no {' and no '.join(names)} ({reason})")
-    return texts
-
-
 def offset(start: Start, far: Any) -> float:
     """Return how far a swing's highest points may lie from its ends, in radians of azimuth.
 

@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+from lines import unwrapped
 
 
 def test_paris_as_show_and_generate_print_it(foucault, tmp_path):
@@ -33,4 +34,4 @@ def test_paris_as_show_and_generate_print_it(foucault, tmp_path):
         "--out",
         tmp_path / "p",
     )
-    assert "2 grid times, 7 transits, 9 digits, computed" in made[1]
+    assert "grid 2 rows transits 7 digits 9 level computed" in unwrapped(made[1])

@@ -1,0 +1,129 @@
+"""Passages of sections that `foucault show` prints: which are asked for, and when they come.
+
+Where inputs are uncertain see `proved`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from ..errors import FoucaultError, InputError
+from ..numbers.precision import digits_that_hold
+from ..numbers.zeros import XDOT
+from ..scenes.scene import Scene, checked_value
+from ..scenes.texts import without_sign
+from .layout import Fact
+
+_FIRST = 3  # passages that are printed if no numbers are asked for
+_DIGITS = 12
+_MORE = 4  # swings after the one that a passage is expected in
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A passage that was asked for: its number, and half of the width that its interval should have.
+
+    The width is None if none was asked for.
+    """
+
+    number: int
+    width_s: Fraction | None = None
+
+
+def asked_passages(words: Sequence[str] | None) -> list[Asked]:
+    """Return the passages that `--passage` asks for; without it the first three.
+
+    Raises:
+        InputError: a word is neither a number from 1 on nor NUMBER=±WIDTH.
+    """
+    if not words:
+        return [Asked(number) for number in range(1, _FIRST + 1)]
+    return [_asked(word) for word in words]
+
+
+def _asked(word: str) -> Asked:
+    expected = "the number of a passage, 50, or with half of the width wanted, 50=±0.1 (in s)"
+    number, sign, width = word.partition("=")
+    if not number.strip().isdecimal() or int(number) < 1:
+        raise InputError("--passage", word, expected)
+    if not sign:
+        return Asked(int(number))
+    try:
+        # any field that takes a decimal checks its form
+        wanted = Fraction(checked_value("site.altitude", without_sign(width), "decimal"))
+    except InputError:
+        raise InputError("--passage", word, expected) from None
+    if wanted <= 0:
+        raise InputError("--passage", word, expected, "A width is above 0.")
+    return Asked(int(number), wanted)
+
+
+def section_words(scene: Scene) -> tuple[str, ...]:
+    """Return the sections whose passages are printed: the scene's, or else its transits."""
+    return scene.run.sections or (XDOT,)
+
+
+def passage_name(word: str, number: int) -> str:
+    """Return what a passage is called."""
+    return f"transit {number}" if word == XDOT else f"passage {number} of {word}"
+
+
+def computed_passages(
+    scene: Scene, asked: Sequence[Asked], period_s: float | None
+) -> list[dict[str, Any]]:
+    """Return passages of a scene with exact inputs, each with its time and an estimate of its error.
+
+    Args:
+        scene: the scene.
+        asked: the passages of each of its sections.
+        period_s: of a swing; None if there is none, and the whole run is solved.
+    """
+    from ..solver.solve import solve
+
+    t_end = scene.run.t_end
+    if period_s is not None:
+        # a section is passed once in a swing, or twice
+        last = max(one.number for one in asked)
+        until_s = (last + _MORE) * period_s
+        if until_s < float(t_end):
+            t_end = f"{until_s:.6g}"
+    settings = {"run.transits": "true", "run.t_end": t_end, "run.grid_step": t_end}
+    try:
+        solution = solve(scene.with_values(settings), level="self_consistent", digits=_DIGITS)
+    except FoucaultError as error:
+        return [{"section": word, "reason": str(error)} for word in section_words(scene)]
+    return [
+        _computed(solution.zeros.get(word), word, one.number)
+        for word in section_words(scene)
+        for one in asked
+    ]
+
+
+def _computed(zeros: Any, word: str, number: int) -> dict[str, Any]:
+    """Return a passage in the form of --json."""
+    passage: dict[str, Any] = {"section": word, "number": number}
+    if zeros is None:
+        return passage | {"reason": "the bob stays in the section"}
+    count = len(zeros.table)
+    if number > count:
+        return passage | {"reason": f"the run has {count}"}
+    t_s = float(zeros.table.exact("t")[number - 1])
+    error_s = float(zeros.table.bound("t")[number - 1])
+    return passage | {"t_s": t_s, "t_error_s": error_s + math.ulp(t_s)}
+
+
+def passage_facts(passages: Sequence[dict[str, Any]]) -> Iterator[Fact]:
+    """Yield passages with the digits that their errors leave."""
+    for passage in passages:
+        word = passage["section"]
+        if "number" not in passage:
+            yield word, f"no passages: {passage['reason']}"
+        elif "reason" in passage:
+            yield passage_name(word, passage["number"]), f"none: {passage['reason']}"
+        else:
+            digits = digits_that_hold(passage["t_s"], passage["t_error_s"])
+            yield passage_name(word, passage["number"]), f"{digits} s"

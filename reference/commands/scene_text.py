@@ -1,0 +1,116 @@
+"""A scene for people: its inputs, and what follows from them without solving it, a fact a line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..scenes.scene import Scene, unit_of
+from .layout import Fact
+
+_READINGS = {
+    "decimal": "decimal: each number is exact as written",
+    "binary64": "binary64: each number is the double nearest to it",
+}
+_GRAVITY = {
+    "ellipsoid": "gravity alone (ellipsoid): the centrifugal force is added",
+    "effective": "as measured along the plumb line (effective)",
+}
+
+
+def title_of(scene: Scene) -> str:
+    """Return the id and the title of a scene."""
+    return f"{scene.id}: {scene.title}" if scene.title else scene.id
+
+
+def input_facts(scene: Scene, flag_meanings: dict[str, str]) -> Iterator[Fact]:
+    """Yield the inputs of a scene, in words and with units; each flag and width has a line."""
+    if scene.source:
+        yield "source", scene.source
+    for flag, meaning in flag_meanings.items():
+        yield "difficult", f"{flag}: {meaning}"
+    yield "cord", _cord(scene)
+    yield "site", _site(scene)
+    site = scene.site
+    yield "gravity", f"{site.gravity} m/s², {_GRAVITY[site.gravity_is]}"
+    yield "Earth", _earth(scene)
+    yield "release", _release(scene)
+    yield "run", _run(scene)
+    if scene.run.sections:
+        yield "sections", ", ".join(scene.run.sections)
+    for name, width in scene.uncertain.items():
+        yield "uncertain", f"{name} ±{width.removeprefix('±')} {unit_of(name)}".rstrip()
+    yield "inputs", _READINGS[scene.inputs]
+
+
+def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
+    """Yield what follows from the inputs of a scene; without a rest position, that there is none."""
+    if "axis_distance_m" in derived:
+        yield "Earth's axis", f"{derived['axis_distance_m']} m away"
+    pull = f"{derived['pivot_gravity_m_s2']} m/s²"
+    yield "pull", f"{pull}, gravity and centrifugal force together"
+    if "small_swing_period_s" in derived:
+        yield "small swing", f"{derived['small_swing_period_s']} s"
+    yield "hangs", _rest(derived)
+
+
+def _cord(scene: Scene) -> str:
+    drag = f"drag {scene.pendulum.drag} 1/s" if scene.exact.drag else "no drag"
+    return f"{scene.pendulum.length} m, {drag}"
+
+
+def _site(scene: Scene) -> str:
+    latitude = toward(scene.site.latitude, "° north", "° south")
+    return f"{latitude}, altitude {scene.site.altitude} m"
+
+
+def _earth(scene: Scene) -> str:
+    site = scene.site
+    if site.inverse_flattening == "inf":
+        shape = "a sphere"
+    else:
+        shape = f"flattening 1/{site.inverse_flattening}"
+    return f"turns at {site.rotation_rate} rad/s; radius {site.equatorial_radius} m, {shape}"
+
+
+def _release(scene: Scene) -> str:
+    """Return where the bob is let go, and how fast it moves then."""
+    release = scene.release
+    if release.angle is None:
+        east = toward(release.x or "0", " m east", " m west")
+        north = toward(release.y or "0", " m north", " m south")
+        place = f"{east}, {north} of the suspension"
+        rates = {"m/s east": release.vx, "m/s north": release.vy}
+    else:
+        place = f"{release.angle}° from straight down, azimuth {release.azimuth}°"
+        rates = {
+            "°/s of the angle": release.angle_rate,
+            "°/s of the azimuth": release.azimuth_rate,
+        }
+    moving = [f"{rate} {unit}" for unit, rate in rates.items() if rate and float(rate)]
+    return f"{place}, {'pushed: ' + ', '.join(moving) if moving else 'at rest'}"
+
+
+def _run(scene: Scene) -> str:
+    run = scene.run
+    transits = "" if run.transits else ", no transits"
+    return (
+        f"{run.t_end} s, a row each {run.grid_step} s, {run.digits} digits, {run.level}{transits}"
+    )
+
+
+def _rest(derived: dict[str, str]) -> str:
+    """Return the rest position of the bob, about which it swings."""
+    if "rest_y_m" not in derived:
+        return "nowhere: there is no rest position"
+    aside_m = float(derived["rest_y_m"])
+    upward = " above the suspension" if float(derived["rest_z_m"]) > 0 else ""
+    if not aside_m:
+        return f"in the vertical{upward}"
+    return f"{toward(f'{aside_m:.4g}', ' m north', ' m south')} of the vertical{upward}"
+
+
+def toward(number: str, positive: str, negative: str) -> str:
+    """Return a number without its sign, and the word for the side that the sign means."""
+    if number.startswith("-"):
+        return f"{number[1:]}{negative}"
+    return f"{number.removeprefix('+')}{positive}"
