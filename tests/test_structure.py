@@ -166,6 +166,7 @@ PUBLIC = {
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",
+    "reference.solver.doubles": "TOLERANCE double_reach",
     "reference.solver.ranges": "Intervals",
     "reference.solver.sensitivity": "Sensitivity digits_lost",
     "reference.solver.solve": "roughly",

@@ -13,6 +13,7 @@ from pydantic import TypeAdapter
 from reference import load_scene
 from reference.commands.layout import paragraph as as_lines
 from reference.plain_text import shortened
+from reference.solver.doubles import double_reach
 from reference.status import Status
 
 from ..studies.campaign import machine
@@ -240,15 +241,21 @@ def _scenes(cells: Sequence[Cell]) -> Html:
         tried = [status for status in statuses if status not in _NOT_TRIED]
         correct = tried.count(Status.OK)
         failed = len(tried) - correct
-        rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))
+        doubles = double_reach(scene).in_words
+        rows.append((name, scene.title, ", ".join(scene.flags), doubles, correct, failed))
     columns = {
         "scene": "",
         "description": "prose",
         "flags": "prose",
+        "in doubles, at best": "",
         "correct": "number",
         "failed": "number",
     }
-    return PageTable(columns, rows).html()
+    explained = paragraph(
+        "In doubles, at best: how far a program can follow the whole scene if it rounds the inputs "
+        "once and nothing else (docs/doubles.md)."
+    )
+    return Html(explained + PageTable(columns, rows).html())
 
 
 def text_table(document: dict[str, Any]) -> str:

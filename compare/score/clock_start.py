@@ -16,6 +16,7 @@ import numpy as np
 from reference import InputError, Scene
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, Array
+from reference.solver.doubles import TOLERANCE
 
 from ..candidates.candidate import Candidate, Deviation
 from ..candidates.clock import shown
@@ -23,7 +24,6 @@ from ..candidates.clock import shown
 Ends = tuple[Fraction, Fraction]
 
 _MOST_PLACES = 9  # of a time in s
-TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 SUBTRACT = "Subtract what the clock showed at the release."
 
 

@@ -23,6 +23,7 @@ from reference.dataset.golden import WITHIN, Dense
 from reference.errors import did_you_mean, in_words
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
+from reference.solver.doubles import TOLERANCE
 
 from ..candidates.arrays import candidate_from, real_array
 from ..candidates.candidate import Candidate, checked_transits
@@ -42,7 +43,7 @@ from ..truth import (
     with_function,
 )
 from .baseline import document_of, since
-from .clock_start import TOLERANCE, counted_from_release
+from .clock_start import counted_from_release
 from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .remarks import scale_beyond_the_cord, warning_of_a_flung_bob, warning_of_a_resting_bob
 from .time_span import check_end, check_transits, end_of_run, rows_until

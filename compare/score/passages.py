@@ -17,10 +17,11 @@ from reference.model.sections import form_of
 from reference.model.start import Start
 from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
+from reference.solver.doubles import TOLERANCE
 
 from ..candidates.candidate import Passages
 from ..truth import DIGITS, SILENT, Progress, golden_of, truth_at
-from .clock_start import SUBTRACT, TOLERANCE, Ends, clock_starts, starts_in_words
+from .clock_start import SUBTRACT, Ends, clock_starts, starts_in_words
 from .errors import entry, swing_rate
 from .measured import SWING
 from .transit_matching import TransitErrors, transit_errors

@@ -13,4 +13,5 @@
   must find the same zeros.
 - `swing`: frequency and precession as intervals, from the highest points.
 - `sensitivity`: response of a trajectory to each input, and how many digits that costs.
+- `doubles`: how far a program in double precision can follow a scene, at best.
 """

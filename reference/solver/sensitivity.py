@@ -8,7 +8,7 @@ from differences in 320 bits.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -98,13 +98,18 @@ def _perturbed(inputs: Inputs, nudge: Fraction, *, release: bool) -> Inputs:
 
     A latitude where a term vanishes is exact.
     """
+    for name, value, factor in _nudged(inputs, release=release):
+        inputs = with_value(inputs, name, value * (1 + factor * nudge))
+    return inputs
+
+
+def _nudged(inputs: Inputs, *, release: bool) -> Iterator[tuple[str, Fraction, Fraction]]:
+    """Yield name, value and factor of the nudge of each number of the release, or of each constant."""
     for name, value in inputs.by_name.items():
         section, key = name.split(".")
         is_exact = key == "latitude" and value % 90 == 0
         if (section == "release") == release and not is_exact:
-            factor = 1 + _NUDGE_FACTORS.get(key, -1) * nudge
-            inputs = with_value(inputs, name, value * factor)
-    return inputs
+            yield name, value, _NUDGE_FACTORS.get(key, Fraction(-1))
 
 
 @dataclass(frozen=True)
@@ -126,6 +131,19 @@ class Sensitivity:
         """
         return self._along(self._slope(name))
 
+    def relative(self, *, release: bool) -> Array:
+        """Return the response to one relative change of all numbers of the release, or of all constants.
+
+        Shape (times, 6), in m and m/s. The signs of the changes add up their effects; a latitude
+        where a term vanishes is exact, as in `digits_lost`.
+        """
+        slopes = [
+            float(factor * value) * self._slope(name)
+            for name, value, factor in _nudged(self.scene.exact, release=release)
+            if value
+        ]
+        return self._sum(slopes)
+
     def rounding(self) -> Array:
         """Return how far rounding all inputs to binary64 moves the trajectory, shape (times, 6)."""
         slopes = []
@@ -133,6 +151,10 @@ class Sensitivity:
             change = Fraction(float(value)) - value
             if change:
                 slopes.append(float(change) * self._slope(name))
+        return self._sum(slopes)
+
+    def _sum(self, slopes: list[Array]) -> Array:
+        """Return the response to several changes at once."""
         if not slopes:
             return np.zeros((len(self.times), 6))
         return self._along(np.sum(slopes, axis=0))

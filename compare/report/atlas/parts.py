@@ -20,13 +20,14 @@ from reference.dataset.render import MEANING
 from reference.dataset.sheets import by_field
 from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
+from reference.solver.doubles import TOLERANCE
 from reference.status import Status
 
 from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
 from ...candidates.candidate import Deviation
 from ...diagnosis import AXES_SAID, LENGTHS_SAID, TIMES_SAID
-from ...score.clock_start import SUBTRACT, TOLERANCE
+from ...score.clock_start import SUBTRACT
 from ...score.errors import swing_rate
 from ...score.judge import SMALL
 from ...score.time_span import FAR, FINER, SAME
