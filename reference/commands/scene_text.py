@@ -48,6 +48,9 @@ def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
         yield "Earth's axis", f"{derived['axis_distance_m']} m away"
     pull = f"{derived['pivot_gravity_m_s2']} m/s²"
     yield "pull", f"{pull}, gravity and centrifugal force together"
+    if "normal_gravity_m_s2" in derived:
+        normal = f"{derived['normal_gravity_m_s2']} m/s²"
+        yield "normal gravity", f"{normal} at this latitude (GRS 80), effective"
     if "small_swing_period_s" in derived:
         yield "small swing", f"{derived['small_swing_period_s']} s"
     yield "hangs", _rest(derived)

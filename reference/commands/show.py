@@ -38,6 +38,11 @@ _FORMS = {
 }
 _LEFT_OUT = "Left out: they need pip install 'foucault-reference[enclose]'."
 _NEXT = "Next: `foucault generate {0}` solves it; `foucault score {0} FILE` judges a program by it."
+# what makes a motion in doubles leave the true one
+_COSTS = {
+    "release": "the motion magnifies the rounding of the release",
+    "constants": "rounding length, gravity, … changes the period",
+}
 _DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 _SCENE = scene_argument(
@@ -206,6 +211,12 @@ def _checked_parts(
     )
     yield _Part({"motion": motion}, title, facts(motion_facts(motion)))
 
+    doubles = _doubles(scene)
+    if "in_words" in doubles:
+        text = f"{doubles['in_words']}; {_COSTS[doubles['costs_most']]}"
+        pairs = [("agrees to", text)]
+        yield _Part({"doubles": doubles}, "A program in double precision, at best", facts(pairs))
+
     wants_passages = bool(options.section or options.passage)
     if wants_passages and widths is None:
         from .passages import computed_passages, passage_facts
@@ -334,10 +345,11 @@ def _compiled(scene: Scene) -> dict[str, Any]:
 
 
 def _derived(scene: Scene) -> dict[str, str]:
-    """Return axis distance, apparent gravity at the pivot, small-swing period and rest position.
+    """Return axis distance, apparent and normal gravity, small-swing period and rest position.
 
-    Each has 15 digits. What the scene does not have is left out.
+    Each has 15 digits, normal gravity six. What the scene does not have is left out.
     """
+    from ..model.normal_gravity import normal_gravity
     from ..model.start import Start
 
     start = Start.of(scene.exact, _DERIVED_PREC)
@@ -355,7 +367,38 @@ def _derived(scene: Scene) -> dict[str, str]:
         rest = start.rest
         quantities["rest_y_m"] = rest[1] * k.length
         quantities["rest_z_m"] = rest[2] * k.length
-    return {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in quantities.items()}
+    texts = {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in quantities.items()}
+    if _is_on_earth(scene):
+        texts["normal_gravity_m_s2"] = f"{normal_gravity(float(scene.site.latitude)):.5f}"
+    return texts
+
+
+def _is_on_earth(scene: Scene) -> bool:
+    """Return whether a scene has an ellipsoid about as large as the Earth, which turns about as fast."""
+    numbers = scene.exact.by_name
+    if not numbers["site.gravity"]:
+        return False
+    radius = float(numbers["site.equatorial_radius"]) / 6_378_137
+    rate = float(numbers["site.rotation_rate"]) / 7.292115e-5
+    return abs(radius - 1) < 0.01 and abs(rate - 1) < 0.01
+
+
+def _doubles(scene: Scene) -> dict[str, Any]:
+    """Return how far a program in double precision can follow a scene, or the reason why that is not known."""
+    from ..solver.doubles import double_reach
+    from ..sweeps.scene_swing import first_swings
+
+    try:
+        reach = double_reach(first_swings(scene))
+    except (FoucaultError, ArithmeticError) as error:
+        return {"reason": str(error)}
+    return {
+        "over_s": reach.end_s,
+        "digits": reach.digits,
+        "until_s": reach.until_s,
+        "costs_most": reach.costly,
+        "in_words": reach.in_words,
+    }
 
 
 def _motion(scene: Scene) -> dict[str, Any]:

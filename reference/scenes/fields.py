@@ -102,7 +102,9 @@ class Site(SceneTable):
     rotation_rate: Number = field("7.292115e-5", "rad/s", "rate at which the Earth turns")
     equatorial_radius: NotNegative = field("6378137", "m", "radius of the ellipsoid at the equator")
     inverse_flattening: Annotated[Number, within("1", open_low=True), OR_INF] = field(
-        "298.257223564", "", 'inverse flattening of the ellipsoid; "inf" for a sphere'
+        "298.257223564",
+        "",
+        'inverse flattening of the ellipsoid; "inf" for a sphere; the default is the paper\'s, WGS 84 has …563',
     )
 
 

@@ -60,8 +60,8 @@ class DoubleReach:
         if self.until_s == 0:
             return "not at all"
         if self.digits is None:
-            return f"to t = {self.until_s:.2g} s"
-        return f"about {self.digits:.0f} digits to the end"
+            return f"6 digits up to {self.until_s:.2g} s, then fewer"
+        return f"about {self.digits:.0f} digits up to {self.end_s:g} s"
 
 
 def double_reach(scene: AnyScene) -> DoubleReach:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..errors import UnreachableError
 from ..model.start import Start
-from ..scenes.scene import AnyScene, as_scene
+from ..scenes.scene import AnyScene, Scene, as_scene
 from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, ONE_SIDE, SMALL, offset, turns_too_far
 from .part import highest_on_one_side, solve_part
 from .request import Settings, request
@@ -66,11 +66,8 @@ def swing(scene: AnyScene) -> EstimatedSwing:
         InputError: a field of the scene is wrong.
         UnreachableError: the bob does not swing to and fro, or double precision does not decide it.
     """
-    scene = as_scene(scene)
+    scene = first_swings(scene)
     start = Start.of(scene.exact, _PRECISION_BITS)
-    longest_s = _MOST_SWINGS * 2 * math.pi / start.fastest_rate
-    if scene.exact.t_end > longest_s:
-        scene = scene.with_values({"run.t_end": f"{longest_s:.4g}"})
     one_row = request(scene, [f"site.latitude={scene.site.latitude}"], settings=_SETTINGS)
     columns = solve_part(one_row, range(1), promote=None).columns
     row = {name: values[0] for name, values in columns.items()}
@@ -102,6 +99,20 @@ def swing(scene: AnyScene) -> EstimatedSwing:
         precession_error_deg_per_h=float(row["precession_error_deg_per_h"]),
         reason=reason,
     )
+
+
+def first_swings(scene: AnyScene) -> Scene:
+    """Return a scene that lasts for 10,000 swings at most.
+
+    Raises:
+        InputError: a field of the scene is wrong.
+    """
+    scene = as_scene(scene)
+    start = Start.of(scene.exact, _PRECISION_BITS)
+    longest_s = _MOST_SWINGS * 2 * math.pi / start.fastest_rate
+    if scene.exact.t_end <= longest_s:
+        return scene
+    return scene.with_values({"run.t_end": f"{longest_s:.4g}"})
 
 
 def _smallest_amplitude_m(start: Start, largest_deg: float, span_s: float) -> float:
