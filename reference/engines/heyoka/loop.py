@@ -95,7 +95,7 @@ class _Row:
         return per_swing * self.release.end * self.release.rate / (2 * np.pi)
 
 
-class _End(NamedTuple):
+class _RunEnd(NamedTuple):
     """The end of a run: state, steps taken, and whether it stopped before the end of the span."""
 
     state: Any
@@ -139,7 +139,7 @@ class Integrator:
         numbers = [*constants[: self._parameters], *row.form]
         self._ta.pars[:] = numbers[: len(self._ta.pars)]
 
-    def to_end(self, release: RowRelease, max_steps: int) -> _End:
+    def to_end(self, release: RowRelease, max_steps: int) -> _RunEnd:
         """Integrate to the end of the span.
 
         A zero at the release may hide the next one from heyoka, if both are in one step: the first
@@ -149,11 +149,11 @@ class Integrator:
         if short:
             self._ta.step(min(release.quiet, release.end))
             if not np.isfinite(self._ta.time):
-                return _End(self._ta.state.copy(), 1, stopped=True)
+                return _RunEnd(self._ta.state.copy(), 1, stopped=True)
         outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=max_steps)
         state = self._ta.state.copy()
         in_time = outcome == hy.taylor_outcome.time_limit
-        return _End(state, int(steps) + short, not in_time or not np.isfinite(state).all())
+        return _RunEnd(state, int(steps) + short, not in_time or not np.isfinite(state).all())
 
     def zeros(self, kind: int) -> RowZeros:
         """Return the zeros of a kind that were passed, in order."""
