@@ -255,8 +255,9 @@ def _as_bars() -> Iterator[Show]:
     def hide_done() -> None:
         """Hide work that is done; but if all of it is, the last bar stays, as a sign of life."""
         shown = [task for task in bars.tasks if task.visible]
-        undone = [task for task in shown if not task.finished]
-        for task in shown[:-1] if not undone else shown:
+        if all(task.finished for task in shown):
+            shown.pop()
+        for task in shown:
             if task.finished:
                 bars.update(task.id, visible=False)
 

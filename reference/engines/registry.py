@@ -105,13 +105,17 @@ def run_both(
     end = float(first.times[-1])
     ACTIVITY.send("integrating")
     with in_background(pays, send_run, second) as background:
-        combine = max if background.at_work else sum
-        all_s = combine((first_s, second_s))
+        if report is None:
+            return run(first), background.result()
+
+        # the slower of two runs at the same time counts, or both, one after the other
+        combined = max if background.at_work else sum
+        all_s = combined((first_s, second_s))
 
         def tell(first_t: float, second_t: float) -> None:
-            left_s = combine((first_s * (1 - first_t / end), second_s * (1 - second_t / end)))
-            if report is not None:
-                report(end * (1 - left_s / all_s))
+            first_left_s = first_s * (1 - first_t / end)
+            second_left_s = second_s * (1 - second_t / end)
+            report(end * (1 - combined((first_left_s, second_left_s)) / all_s))
 
         first_run = run(first, lambda t: tell(t, background.reached))
         return first_run, background.result(lambda t: tell(end, t))
