@@ -133,7 +133,7 @@ PUBLIC = {
     "reference.commands.cautions": "warn",
     "reference.commands.layout": "Column echo facts paragraph table",
     "reference.commands.options": "Conflict as_command refuse_conflicts",
-    "reference.commands.progress": "Move progress",
+    "reference.commands.progress": "progress",
     "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections "
     "Uncertain Workers check_workers chosen completion emit option refuse "
     "replacements scene_argument stoppable widths_by_name",
@@ -179,6 +179,7 @@ PUBLIC = {
     "reference.sweeps.sweep": "checked_request run",
     "reference.system": "cache",
     "reference.system.cache": "arrays kept",
+    "reference.system.channel": "ACTIVITY",
     "reference.system.checksums": "SUMS is_sound sealed_line sums_text",
     "reference.system.documents": "json_document json_lines open_at_once texts_of",
     "reference.system.imports": "Registry lazy missing needed switched_off",

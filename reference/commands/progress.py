@@ -103,6 +103,11 @@ class Work:
         return self._last.completed if self._samples else 0.0
 
     @property
+    def is_done(self) -> bool:
+        """Whether the total is reached, or not known yet."""
+        return self.completed >= self.total
+
+    @property
     def elapsed_s(self) -> float:
         """The time since the work began."""
         return time.monotonic() - self.begun_s
@@ -199,7 +204,7 @@ def _noticed(
     """Move a piece of work on, and print a line if one is due."""
     work.move(completed, total, item)
     remaining = work.remaining()
-    if not remaining or work.completed >= work.total or not notices.is_due(work.elapsed_s):
+    if not remaining or work.is_done or not notices.is_due(work.elapsed_s):
         return
     line = f"{work.description}: {remaining}, {work.counted} after {work.elapsed_s:.0f} s"
     typer.echo(line, err=True)
@@ -243,22 +248,21 @@ def _as_bars() -> Iterator[Show]:
     def show(label: str, total: float = 0, unit: str = "s", later: float = 0.0) -> Move:
         work = Work(label, total, unit, later)
         task = bars.add_task("", total=total, work=work)
-        hide_done()
+        choose_bars()
 
         def move(completed: float, total: float | None = None, item: str = "") -> None:
             work.move(completed, total, item)
             bars.update(task, completed=completed, total=work.total)
-            hide_done()
+            choose_bars()
 
         return move
 
-    def hide_done() -> None:
-        """Hide work that is done; but if all of it is, the last bar stays, as a sign of life."""
-        shown = [task for task in bars.tasks if task.visible]
-        undone = [task for task in shown if not task.finished]
-        for task in shown[:-1] if not undone else shown:
-            if task.finished:
-                bars.update(task.id, visible=False)
+    def choose_bars() -> None:
+        """Show the work that is not done; if all of it is, the last bar stays, as a sign of life."""
+        undone = [task for task in bars.tasks if not task.fields["work"].is_done]
+        shown = undone or bars.tasks[-1:]
+        for task in bars.tasks:
+            bars.update(task.id, visible=task in shown)
 
     def hear(text: str) -> None:
         for task in bars.tasks:

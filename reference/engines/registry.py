@@ -14,6 +14,7 @@ from time import process_time
 from typing import Any
 
 from ..errors import FoucaultError, InputError
+from ..numbers.taylor_step import TaylorStep
 from ..system.channel import ACTIVITY
 from ..system.workers import Emit, Worker, usable_cores
 from . import AUTO, batch_names, engine_names
@@ -22,6 +23,7 @@ from .plan import Engine, Pace, Plan, Report, Run
 
 _SERIES_BITS = 20  # beyond a run's precision, to which the series of its steps are taken
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
+_SECOND_PASS = 6  # what the pass for sections takes, over the run itself
 _REPORT_S = 0.2  # seconds between two reports of progress
 WORTH_A_PROCESS = 1.0  # estimated CPU seconds from which a process pays for its start
 _COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
@@ -77,15 +79,26 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     For arguments and errors see `Engine.run`.
     """
     engine = engines()[plan.engine]
-    done = engine.run(plan, report, pace)
     if not plan.sections:
-        return done
+        return engine.run(plan, report, pace)
     from .passages import passages
 
+    end = float(plan.times[-1])
+    first_report = report and (lambda t: report(t / (1 + _SECOND_PASS)))
+    done = engine.run(plan, first_report, pace)
     begun = process_time()
-    steps = engine.expanded(plan, plan.number.prec + _SERIES_BITS)
+    steps: Iterator[TaylorStep] = engine.expanded(plan, plan.number.prec + _SERIES_BITS)
+    if report is not None:
+        steps = _reported(steps, lambda t: report((end + _SECOND_PASS * t) / (1 + _SECOND_PASS)))
     zeros = {**done.zeros, **passages(plan, steps)}
     return replace(done, zeros=zeros, cpu_s=done.cpu_s + process_time() - begun)
+
+
+def _reported(steps: Iterator[TaylorStep], report: Report) -> Iterator[TaylorStep]:
+    """Yield steps, and report the simulated time at which each begins."""
+    for step in steps:
+        report(float(step.centre + step.h * step.low))
+        yield step
 
 
 def run_both(
@@ -105,13 +118,17 @@ def run_both(
     end = float(first.times[-1])
     ACTIVITY.send("integrating")
     with in_background(pays, send_run, second) as background:
-        combine = max if background.at_work else sum
-        all_s = combine((first_s, second_s))
+        if report is None:
+            return run(first), background.result()
+
+        # the slower of two runs at the same time counts, or both, one after the other
+        combined = max if background.at_work else sum
+        all_s = combined((first_s, second_s))
 
         def tell(first_t: float, second_t: float) -> None:
-            left_s = combine((first_s * (1 - first_t / end), second_s * (1 - second_t / end)))
-            if report is not None:
-                report(end * (1 - left_s / all_s))
+            first_left_s = first_s * (1 - first_t / end)
+            second_left_s = second_s * (1 - second_t / end)
+            report(end * (1 - combined((first_left_s, second_left_s)) / all_s))
 
         first_run = run(first, lambda t: tell(t, background.reached))
         return first_run, background.result(lambda t: tell(end, t))
@@ -119,7 +136,8 @@ def run_both(
 
 def expected_s(plan: Plan, steps: int) -> float:
     """Return about how many CPU seconds a run takes that would be `steps` steps in double."""
-    return engines()[plan.engine].expected_s(steps, plan.number.prec)
+    passes = 1 + _SECOND_PASS if plan.sections else 1
+    return passes * engines()[plan.engine].expected_s(steps, plan.number.prec)
 
 
 def send_run(emit: Emit, plan: Plan) -> None:

@@ -108,8 +108,10 @@ def _workload(
     proof_s = steps * engine.proof_step_s + engine.expected_s(steps, prec)
     parts_s = {_PROVING: proof_s}
     if plan is not None:
-        share = Fraction(1, SAMPLED) if confirm == "sampled" else 1
-        parts_s[_CONFIRMING] = expected_s(plan, steps) * float(share)
+        if confirm == "sampled":
+            parts_s[_CONFIRMING] = expected_s(_states_alone(plan), steps) / SAMPLED
+        else:
+            parts_s[_CONFIRMING] = expected_s(plan, steps)
     if confirm != "whole":
         event_run = confirming_plan(task.scene, request.times, task.pilot, LONG_DOUBLE.prec)
         parts_s[_SEEING] = expected_s(event_run, steps)
@@ -145,8 +147,13 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     """
     from ..engines.heyoka.run import run_between
 
-    states_alone = replace(plan, zeros=())
-    return run_between(states_alone, solution.grid, drawn_intervals(solution.scene), report)
+    intervals = drawn_intervals(solution.scene)
+    return run_between(_states_alone(plan), solution.grid, intervals, report)
+
+
+def _states_alone(plan: Plan) -> Plan:
+    """Return a run that looks for no transits and no passages of sections."""
+    return replace(plan, zeros=())
 
 
 def confirmed(task: ProofTask, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:

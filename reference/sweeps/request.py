@@ -201,7 +201,7 @@ class Request:
 
     @property
     def rows_per_audited(self) -> float:
-        """About how many rows take as long as one row of the audit, by the default scene."""
+        """About how many rows take as long as one row of the audit."""
         if self.promotes:
             return 1.0
         audited_s = _AUDITED_S + _AUDITED_SWING_S * _swings(self.scene)

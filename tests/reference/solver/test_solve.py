@@ -389,6 +389,21 @@ def test_two_runs_report_by_what_they_cost(monkeypatch, paris):
     assert seen[len(seen) // 4] < 0.15 * 4000
 
 
+def test_a_run_reports_its_second_pass_for_sections_too(paris):
+    """The run itself is a seventh of the work."""
+    times = (Fraction(0), Fraction(2000))
+    alone = Plan(paris.exact, "momentum", DOUBLE, times, ("xdot",))
+    with_section = replace(alone, zeros=("xdot", "highest"))
+    first_pass: list[float] = []
+    both: list[float] = []
+    run(alone, first_pass.append)
+    run(with_section, both.append)
+    assert both == sorted(both)
+    assert len(both) > len(first_pass)
+    assert both[len(first_pass) - 1] <= 2000 / 7
+    assert both[-1] > 0.9 * 2000
+
+
 def test_an_error_in_the_second_process_arrives_in_the_first(paris):
     good = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)))
     lost = make_scene(pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
