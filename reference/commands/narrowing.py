@@ -15,13 +15,13 @@ from ..errors import BoxTooWideError
 from ..numbers.zeros import XDOT
 from ..scenes.scene import Scene
 from ..solver.uncertain import decimal, prove_ranges
+from .progress import Move
 
 _TENTH = 10
 _NARROWER = (2, 5, 10, 20, 50, 100)  # factors that are tried, in turn
 _AFTER = Fraction(101, 100)  # of a passage's time: where the proofs of this passage end
 
 Widths = Mapping[str, str]
-Result = Any
 
 
 def reach_s(scene: Scene, widths: Widths) -> float:
@@ -39,14 +39,17 @@ class Narrowing:
     Args:
         scene: the scene.
         widths: half of the width of each uncertain input, as decimals.
+        report: called with the number of proofs that are done.
     """
 
-    def __init__(self, scene: Scene, widths: Widths) -> None:
+    def __init__(self, scene: Scene, widths: Widths, report: Move) -> None:
         self._scene = scene
         self._widths = widths
+        self._report = report
+        self._done = 0
 
     def for_the_run(self, holds_s: float) -> dict[str, Any]:
-        """Return how far the proof holds with each input alone ten times as well known, and what suffices.
+        """Return how far the states are proved with each input alone ten times as well known, and what suffices.
 
         Args:
             holds_s: up to which time it holds with the widths as they are.
@@ -107,15 +110,19 @@ class Narrowing:
         if "wanted_s" in passage:
             wanted_s = float(passage["wanted_s"])
             best = min(alone, key=lambda name: alone[name])
-            met = found["half_width_s"] <= wanted_s
-            found["enough"] = (
-                {} if met else self._enough(measured, best, lambda half_s: half_s <= wanted_s)
-            )
+            found["enough"] = {}
+            if found["half_width_s"] > wanted_s:
+                found["enough"] = self._enough(measured, best, lambda half_s: half_s <= wanted_s)
         return found
 
     def _alone(self, measured: Callable[[Widths], float]) -> dict[str, float]:
         """Return what is measured with each input alone ten times as well known."""
-        return {name: measured(self._narrower([name], _TENTH)) for name in self._widths}
+        results = {}
+        for name in self._widths:
+            results[name] = measured(self._narrower([name], _TENTH))
+            self._done += 1
+            self._report(self._done)
+        return results
 
     def _enough(
         self,

@@ -23,6 +23,7 @@ from ..solver.uncertain import exact_texts, prove_ranges, widths_of
 from ..system.workers import Emit
 from .narrowing import Narrowing, reach_s
 from .passages import Asked, section_words
+from .progress import Move, Show
 
 _FIRST = 3  # transits, and passages of each section, that are printed for uncertain inputs
 _PROVED_DIGITS = 15  # of the highest points from which period and precession follow
@@ -72,7 +73,7 @@ def _texts(interval: Any) -> list[str] | None:
 
 
 def proved_ranges(
-    scene: Scene, widths: dict[str, str], asked: Sequence[Asked], wants_passages: bool
+    scene: Scene, widths: dict[str, str], asked: Sequence[Asked], begin: Show
 ) -> dict[str, Any]:
     """Return what is proved for uncertain inputs, over as much of the run as a proof holds for.
 
@@ -84,7 +85,7 @@ def proved_ranges(
         scene: the scene.
         widths: half of the width of each uncertain input.
         asked: passages of each section.
-        wants_passages: whether they were asked for.
+        begin: begins a piece of work that is shown to the user.
 
     Raises:
         InputError: an input, or a width.
@@ -95,10 +96,11 @@ def proved_ranges(
     with in_background(True, _send_near, whole, texts) as near:
         # a look at the states alone costs little
         holds_s = reach_s(whole, texts)
-        ranges = _as_far_as_it_goes(whole, texts, holds_s)
-        document = _ranges_document(whole, texts, ranges, asked if wants_passages else ())
+        report = begin(f"{scene.id}: proving", holds_s)
+        ranges = _as_far_as_it_goes(whole, texts, holds_s, report)
+        document = _ranges_document(whole, texts, ranges, asked)
         document |= near.result()
-    narrowing = _narrowing(whole, texts, document)
+    narrowing = _narrowing(whole, texts, document, begin)
     if narrowing:
         document["narrowing"] = narrowing
     return document
@@ -114,13 +116,16 @@ def _ending_at(scene: Scene, t_end: str) -> Scene:
     return _without_grid(scene.with_values({"run.t_end": t_end}))
 
 
-def _as_far_as_it_goes(scene: Scene, widths: dict[str, str], holds_s: float) -> Ranges | None:
+def _as_far_as_it_goes(
+    scene: Scene, widths: dict[str, str], holds_s: float, report: Move
+) -> Ranges | None:
     """Return the proof for the whole run, or for as much of it as it holds for; None if for nothing.
 
     Args:
         scene: the scene.
         widths: half of the width of each uncertain input.
         holds_s: up to which time the states can be proved, in s.
+        report: called with the simulated time reached, in s.
     """
     sections = [*dict.fromkeys((*(scene.run.sections or ()), "highest"))]
     for _ in range(_TRIES):
@@ -130,7 +135,7 @@ def _as_far_as_it_goes(scene: Scene, widths: dict[str, str], holds_s: float) -> 
         if holds_s < float(scene.run.t_end):
             part = _ending_at(scene, _rounded_down(holds_s))
         try:
-            return prove_ranges(part, widths, derivatives=True, sections=sections)
+            return prove_ranges(part, widths, derivatives=True, sections=sections, report=report)
         except BoxTooWideError as error:
             # zeros near the end need a little more than states do
             holds_s = min(error.holds_s, 0.95 * float(part.run.t_end))
@@ -210,15 +215,24 @@ def passage_interval(ranges: Ranges, word: str, number: int) -> Ends | str:
     return Ends(*times[number - 1])
 
 
-def _narrowing(scene: Scene, widths: dict[str, str], document: dict[str, Any]) -> dict[str, Any]:
-    """Return which inputs to know better: for the whole run, or for the passages asked for."""
-    narrowing = Narrowing(scene, widths)
+def _narrowing(
+    scene: Scene, widths: dict[str, str], document: dict[str, Any], begin: Show
+) -> dict[str, Any]:
+    """Return which inputs to know better: for the passages asked for, and for the whole run."""
+    passages = [passage for passage in document.get("passages", ()) if "t_s" in passage]
+    falls_short = document["over_s"] != scene.run.t_end
+    goals = len(passages) + falls_short
+    if not goals:
+        return {}
+    least_proofs = goals * len(widths)
+    narrowing = Narrowing(
+        scene, widths, begin(f"{scene.id}: narrower inputs", least_proofs, "proofs")
+    )
     found = {}
-    for passage in document.get("passages", ()):
-        if "t_s" in passage:
-            name = f"{passage['section']} {passage['number']}"
-            found[name] = narrowing.for_a_passage(passage)
-    if document["over_s"] != scene.run.t_end:
+    for passage in passages:
+        name = f"{passage['section']} {passage['number']}"
+        found[name] = narrowing.for_a_passage(passage)
+    if falls_short:
         found["run"] = narrowing.for_the_run(float(document["over_s"]))
     return found
 

@@ -53,7 +53,10 @@ def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
         yield "normal gravity", f"{normal} at this latitude (GRS 80), effective"
     if "small_swing_period_s" in derived:
         yield "small swing", f"{derived['small_swing_period_s']} s"
-    yield "hangs", _rest(derived)
+    if "rest_y_m" in derived:
+        yield "hangs", _rest(derived)
+    else:
+        yield "rest position", "none"
 
 
 def _cord(scene: Scene) -> str:
@@ -90,7 +93,9 @@ def _release(scene: Scene) -> str:
             "°/s of the azimuth": release.azimuth_rate,
         }
     moving = [f"{rate} {unit}" for unit, rate in rates.items() if rate and float(rate)]
-    return f"{place}, {'pushed: ' + ', '.join(moving) if moving else 'at rest'}"
+    if not moving:
+        return f"{place}, at rest"
+    return f"{place}, moving at {' and '.join(moving)}"
 
 
 def _run(scene: Scene) -> str:
@@ -103,8 +108,6 @@ def _run(scene: Scene) -> str:
 
 def _rest(derived: dict[str, str]) -> str:
     """Return the rest position of the bob, about which it swings."""
-    if "rest_y_m" not in derived:
-        return "nowhere: there is no rest position"
     aside_m = float(derived["rest_y_m"])
     upward = " above the suspension" if float(derived["rest_z_m"]) > 0 else ""
     if not aside_m:

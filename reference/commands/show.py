@@ -14,6 +14,7 @@ from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings
 from .layout import echo, facts, heading, paragraph
 from .options import Conflict, as_command, refuse_conflicts
+from .progress import progress
 from .scene_text import derived_facts, input_facts, title_of
 from .template import scene_file
 from .terminal import (
@@ -289,9 +290,16 @@ def _ranges_part(
     scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str]
 ) -> _Part:
     """Return what is proved for uncertain inputs, or the reason why nothing can be proved."""
-    ranges = _ranges(scene, options, asked, widths)
-    if "over_s" not in ranges:
-        return _Part({"ranges": ranges}, "Ranges", paragraph(_LEFT_OUT, "  "))
+    from ..solver.uncertain import need_proof
+
+    try:
+        need_proof()
+        ranges = _ranges(scene, options, asked, widths)
+    except NotInstalledError as error:
+        return _Part({"ranges": {"reason": str(error)}}, "Ranges", paragraph(_LEFT_OUT, "  "))
+    except UnreachableError as error:
+        lines = paragraph(f"Left out: {error}", "  ")
+        return _Part({"ranges": {"reason": str(error)}}, "Ranges", lines)
     from .proved_text import ranges_lines, ranges_title
 
     return _Part({"ranges": ranges}, ranges_title(ranges), ranges_lines(ranges))
@@ -300,16 +308,13 @@ def _ranges_part(
 def _ranges(
     scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str]
 ) -> dict[str, Any]:
-    """Return what is proved for uncertain inputs, or the reason why nothing can be proved."""
-    from ..solver.uncertain import need_proof
-
-    try:
-        need_proof()
-    except NotInstalledError as error:
-        return {"reason": str(error)}
+    """Return what is proved for uncertain inputs; it takes long."""
     from .proved import proved_ranges
 
-    return proved_ranges(scene, widths, asked, wants_passages=options.passage is not None)
+    # without --passage the first ones are shown, which cost nothing
+    wanted = asked if options.passage else []
+    with progress() as begin:
+        return proved_ranges(scene, widths, wanted, begin)
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:

@@ -97,7 +97,8 @@ def _checked_dataset(folder: Path, recompute: bool, show: Show) -> _Check:
 
 def _print(folder: Path, check: _Check) -> None:
     """Print the verdict on a folder, then its problems, what was not decided, and notes."""
-    heading(f"{folder}: {'WRONG' if check.problems else 'ok'}")
+    verdict = "WRONG" if check.problems else "ok"
+    heading(f"{folder}: {verdict}")
     for line in [*check.problems, *check.undecided, *check.notes]:
         echo(paragraph(line, "  ", hanging="  "))
 

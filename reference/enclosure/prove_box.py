@@ -21,7 +21,9 @@ LOOK_BITS = 192  # for a first look at a box
 BOX_BITS = 12  # the error of the approximant is at most 2^-12 of the width of the box
 # logarithm of the growth of one radius, from which on derivatives are used
 GROWTH = 1.0
-ADVICE = "Make the inputs less uncertain, or the run shorter (run.t_end)."
+ADVICE = (
+    "Make the inputs less uncertain (`foucault show` says which), or the run shorter (run.t_end)."
+)
 
 
 @dataclass(frozen=True)

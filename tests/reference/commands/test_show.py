@@ -244,3 +244,18 @@ def test_no_shipped_scene_is_warned_of():
     assert {
         name: texts for name in scene_ids() if (texts := cautions(reference.load_scene(name), name))
     } == {}
+
+
+def test_ranges_that_a_motion_makes_unprovable_leave_scene_and_motion(foucault, tmp_path):
+    """A wide swing over so long a time that no number of bits suffices."""
+    wide = tmp_path / "wide.toml"
+    wide.write_text(
+        '[pendulum]\nlength = "1"\n[site]\ngravity_is = "effective"\n'
+        '[release]\nangle = "80"\nazimuth = "0"\n[run]\nt_end = "1000"\ngrid_step = "1000"\n'
+        '[uncertain]\n"release.angle" = "1.6"\n"pendulum.length" = "0.01"\n'
+    )
+    status, out, _ = foucault("show", wide)
+    assert status == 0
+    assert "period" in lines.part(out, "Motion")
+    assert "bits" in lines.part(out, "Ranges")
+    assert "bits" in shown(foucault, wide)["ranges"]["reason"]
