@@ -14,7 +14,7 @@ The form is xdot, or one of `sections`; all of this is in the time of a step, s 
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import reduce
+from functools import lru_cache, reduce
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -164,15 +164,13 @@ class Scan:
         demand(joins, "steps must join, and be of one scene")
         with ctx.workprec(self.balls.prec):
             form = self.form_on(covered)
-            low = ball(piece.step.low)
-            high = ball(piece.step.high)
+            ends = _quarters(piece.step.low, piece.step.high, self.balls.prec)
             if not self.time:
-                self.left = sign(form.value_at(low))
+                self.left = sign(form.value_at(ends[0]))
             self.form = form
             self.time = piece.end
             self.leaves = 0
-            cuts = [(low + (high - low) * k / 4).mid() for k in (1, 2, 3)]
-            for begin, end in pairwise([low, *cuts, high]):
+            for begin, end in pairwise(ends):
                 self._sort(form, begin, end, FIRST_DEPTH)
 
     def finish(self) -> list[EnclosedZero]:
@@ -262,6 +260,16 @@ class Scan:
             for name in rows[0]
         }
         self.found.append(EnclosedZero(parity, direction, interval(t), **state))
+
+
+@lru_cache(maxsize=16)  # most steps go from -1 to 1
+def _quarters(low: Fraction, high: Fraction, prec: int) -> tuple[arb, ...]:
+    """Return the ends of the quarters of a step in `prec` bits, those between them exact."""
+    with ctx.workprec(prec):
+        begin = ball(low)
+        length = ball(high) - begin
+        cuts = [(begin + length * k / 4).mid() for k in (1, 2, 3)]
+        return (begin, *cuts, ball(high))
 
 
 def time_of(leaves: Sequence[Leaf]) -> arb:
