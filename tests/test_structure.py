@@ -131,7 +131,7 @@ PUBLIC = {
     "Swept UnreachableError load load_ranges load_scene parse_scene prove_ranges scene_ids "
     "solve trajectory write",
     "reference.commands.cautions": "warn",
-    "reference.commands.layout": "Column echo facts paragraph table",
+    "reference.commands.layout": "TextColumn echo facts paragraph table",
     "reference.commands.options": "Conflict as_command refuse_conflicts",
     "reference.commands.progress": "progress",
     "reference.commands.terminal": "AsJson Assignments BESIDE_RANGES Cluster EndTime SceneWord Sections "

@@ -18,7 +18,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any
 
-from reference.commands.layout import Column, table
+from reference.commands.layout import TextColumn, table
 from reference.plain_text import plain_lines
 
 from ..candidates.text import is_number
@@ -235,7 +235,7 @@ class PageTable:
         columns = []
         for place, (title, kind) in enumerate(self.columns.items()):
             cells = [row[place] for row in texts]
-            columns.append(Column([title], cells, is_number=kind == "number"))
+            columns.append(TextColumn([title], cells, is_number=kind == "number"))
         return table(columns, keys, indent="")
 
     def csv(self) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 from statistics import median
 from typing import Any
 
-from reference.commands.layout import Column
+from reference.commands.layout import TextColumn
 from reference.commands.layout import paragraph as as_lines
 from reference.commands.layout import table as columns_as_lines
 from reference.plain_text import shortened
@@ -278,7 +278,7 @@ def _measured_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
     columns = []
     for place, head in enumerate(heads):
         cells = [row[place] for row in table]
-        columns.append(Column(head, cells, is_number=place > 1))
+        columns.append(TextColumn(head, cells, is_number=place > 1))
     # the mark, the method and its setting
     return columns_as_lines(columns, keys=3, indent="")
 

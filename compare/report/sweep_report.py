@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reference import InputError
-from reference.commands.layout import Column, paragraph, table
+from reference.commands.layout import TextColumn, paragraph, table
 from reference.errors import counted
 from reference.numbers.precision import Array, digits_that_hold
 from reference.scenes.scene import unit_of
@@ -126,7 +126,7 @@ def _table(swept: Swept) -> list[str]:
     for place, key in enumerate(request.table.values):
         # the table that a field is in is left out
         name = key.rpartition(".")[2]
-        table_columns.append(Column([name, unit_of(key)], [row[place] for row in texts]))
+        table_columns.append(TextColumn([name, unit_of(key)], [row[place] for row in texts]))
 
     heads = _heads(request)
     rows = list(swept.rows())
@@ -134,7 +134,7 @@ def _table(swept: Swept) -> list[str]:
     for column, head in heads.items():
         if column in errors:
             cells = [_result(row, column, errors[column]) for row in rows]
-            table_columns.append(Column(head, cells))
+            table_columns.append(TextColumn(head, cells))
     return table(table_columns, keys=len(request.table.values), indent="")
 
 

@@ -70,7 +70,7 @@ def facts(pairs: Iterable[Fact]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Column:
+class TextColumn:
     """A column of a table: its heads, one above the other, and its cells; numbers are aligned right."""
 
     heads: Sequence[str]
@@ -90,7 +90,7 @@ class Column:
             yield f"{text:{side}{self.width}}"
 
 
-def table(columns: Sequence[Column], keys: int = 1, indent: str = _INDENT) -> list[str]:
+def table(columns: Sequence[TextColumn], keys: int = 1, indent: str = _INDENT) -> list[str]:
     """Return columns side by side.
 
     Columns that do not fit into a line follow in another table below, which repeats the first ones.
@@ -110,7 +110,7 @@ def table(columns: Sequence[Column], keys: int = 1, indent: str = _INDENT) -> li
     return lines
 
 
-def _blocks(columns: Sequence[Column], keys: int, width: int) -> Iterator[list[Column]]:
+def _blocks(columns: Sequence[TextColumn], keys: int, width: int) -> Iterator[list[TextColumn]]:
     """Yield the columns of each table that fits into a width; one has a column besides the keys at least."""
     key_columns = list(columns[:keys])
     block = key_columns

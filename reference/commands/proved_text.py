@@ -7,7 +7,7 @@ from typing import Any
 
 from ..numbers.zeros import XDOT
 from ..scenes.scene import unit_of
-from .layout import Column, Fact, facts, paragraph, table
+from .layout import TextColumn, Fact, facts, paragraph, table
 from .motion_text import QUANTITIES, left_out_facts
 from .passages import passage_name
 
@@ -60,12 +60,12 @@ def _interval_lines(ranges: dict[str, Any]) -> Iterator[str]:
     if rows:
         names, intervals, estimates = zip(*rows, strict=True)
         columns = [
-            Column(["", ""], names, is_number=False),
-            Column(["proved", ""], intervals, is_number=False),
+            TextColumn(["", ""], names, is_number=False),
+            TextColumn(["proved", ""], intervals, is_number=False),
         ]
         if any(estimates):
             over = f"(estimate, {ranges['asked_s']} s)"
-            columns.append(Column(["to first order", over], estimates, is_number=False))
+            columns.append(TextColumn(["to first order", over], estimates, is_number=False))
         yield from table(columns)
     missing = [*left_out_facts(ranges["left_out"]), *_missing_passages(ranges)]
     if not any(ranges[name] for name in ("period_s", "precession_deg_per_h", "full_turn_h")):
@@ -136,10 +136,10 @@ def _limit_lines(ranges: dict[str, Any]) -> Iterator[str]:
     shares = [f"{100 * limit['share']:.1f} %" for limit in limits.values()]
     yield from table(
         [
-            Column(["input"], list(limits), is_number=False),
-            Column(["half-width"], widths, is_number=False),
-            Column(["moves it by"], moves),
-            Column(["share"], shares),
+            TextColumn(["input"], list(limits), is_number=False),
+            TextColumn(["half-width"], widths, is_number=False),
+            TextColumn(["moves it by"], moves),
+            TextColumn(["share"], shares),
         ],
         indent="    ",
     )
@@ -150,10 +150,10 @@ def _limit_lines(ranges: dict[str, Any]) -> Iterator[str]:
     turns = [" to ".join(limit["deg_per_h_per_unit"] or ["–"]) for limit in limits.values()]
     yield from table(
         [
-            Column(["input"], list(limits), is_number=False),
-            Column(["per"], units, is_number=False),
-            Column(["period, s"], periods),
-            Column(["precession, °/h"], turns),
+            TextColumn(["input"], list(limits), is_number=False),
+            TextColumn(["per"], units, is_number=False),
+            TextColumn(["period, s"], periods),
+            TextColumn(["precession, °/h"], turns),
         ],
         keys=2,
         indent="    ",
@@ -213,9 +213,9 @@ def _alone_table(narrowing: dict[str, Any], head: str, results: Sequence[str]) -
     widths = [f"{row['width']} {unit_of(row['input'])}" for row in rows]
     return table(
         [
-            Column(["input"], [row["input"] for row in rows], is_number=False),
-            Column(["half-width"], widths, is_number=False),
-            Column([head], results),
+            TextColumn(["input"], [row["input"] for row in rows], is_number=False),
+            TextColumn(["half-width"], widths, is_number=False),
+            TextColumn([head], results),
         ],
         indent="    ",
     )

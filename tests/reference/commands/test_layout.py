@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from reference.commands.layout import Column, facts, paragraph, table
+from reference.commands.layout import TextColumn, facts, paragraph, table
 
 
 @pytest.fixture(autouse=True)
@@ -28,8 +28,8 @@ def test_a_word_that_is_wider_than_a_line_stays_whole():
 
 
 def test_columns_that_do_not_fit_go_on_below_with_the_keys_again():
-    columns = [Column(["key"], ["a", "bb"], is_number=False)]
-    columns += [Column([f"column{i}", "m"], ["1.5", "22.25"]) for i in range(8)]
+    columns = [TextColumn(["key"], ["a", "bb"], is_number=False)]
+    columns += [TextColumn([f"column{i}", "m"], ["1.5", "22.25"]) for i in range(8)]
     lines = table(columns)
     assert max(map(len, lines)) <= 50
     blocks = "\n".join(lines).split("\n\n")
