@@ -7,7 +7,7 @@ from typing import Any
 
 from ..numbers.zeros import XDOT
 from ..scenes.scene import unit_of
-from .layout import TextColumn, Fact, facts, paragraph, table
+from .layout import Fact, TextColumn, facts, paragraph, table
 from .motion_text import QUANTITIES, left_out_facts
 from .passages import passage_name
 
