@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from compare.studies.stability import cut
-from compare.studies.users_program import measured
+from compare.studies.users_program import ProgramRun, measured
 from compare.truth import golden_of
 from reference import load_scene, trajectory
 from reference.status import Status
@@ -80,7 +80,8 @@ def golden(scene):
 )
 def test_each_way_to_break_has_its_word(scene, golden, command, what, status, said):
     limit_s = 1.0 if what == "hangs" else 20.0
-    row, wrong_from_s = measured("mine", command + what, 0.01, scene, golden, limit_s, 0.1)
+    program = ProgramRun("mine", command + what, step_s=0.01, limit_s=limit_s)
+    row, wrong_from_s = measured(program, scene, golden, 0.1)
     assert row.status == status
     assert said in row.reason
     assert wrong_from_s == (5.25 if what == "drifts" else None)
