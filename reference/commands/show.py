@@ -280,7 +280,7 @@ def _equations_part(compiled: dict[str, Any]) -> _Part:
         pairs.append(("left out", line))
     if compiled["confirmed"]:
         pairs.append(("confirmed", f"by heyoka, of the proof: {compiled['confirmed']}"))
-    lines = facts(pairs)
+    lines = [*facts(pairs), ""]
     for equation in compiled["equations"]:
         lines += paragraph(equation, "  ", hanging="      ")
     return _Part(compiled, "Equations that generate compiles", lines)
