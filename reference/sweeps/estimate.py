@@ -32,7 +32,7 @@ from .highest_points import (
     swing_and_precession,
     unsure_of_highest,
 )
-from .parquet import COLUMNS, STATE_COLUMNS, Column, section_columns
+from .parquet import COLUMNS, STATE_COLUMNS, ParquetColumn, section_columns
 
 _FACTOR = 16.0
 _WILD_FACTOR = 64.0  # where there are three runs
@@ -368,7 +368,7 @@ def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any
 
 
 def _with_errors(
-    columns: dict[str, Any], described: Sequence[Column]
+    columns: dict[str, Any], described: Sequence[ParquetColumn]
 ) -> tuple[dict[str, Any], Any]:
     """Return the columns, and in which rows a number has no error.
 

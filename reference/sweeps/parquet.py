@@ -36,7 +36,7 @@ _HEX_DIGITS = 64  # of a seal
 
 
 @dataclass(frozen=True)
-class Column:
+class ParquetColumn:
     """One column: its kind is that of Arrow (float64, int32, …, or `WORDS`)."""
 
     name: str
@@ -57,15 +57,15 @@ class Column:
 STATE_COLUMNS = (*(f"{name}_m" for name in POSITION), *(f"{name}_m_s" for name in VELOCITY))
 
 
-def _described(table: Mapping[str, Sequence[Any]]) -> tuple[Column, ...]:
+def _described(table: Mapping[str, Sequence[Any]]) -> tuple[ParquetColumn, ...]:
     """Return the columns of a table of parquet.toml."""
-    return tuple(Column(name, *entries) for name, entries in table.items())
+    return tuple(ParquetColumn(name, *entries) for name, entries in table.items())
 
 
 COLUMNS, TRANSIT_COLUMNS, _OF_SECTION = (_described(table) for table in texts_of(__file__).values())
 
 
-def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
+def section_columns(words: Iterable[str]) -> tuple[ParquetColumn, ...]:
     """Return the columns of sections: number of passages, time of the first, and interval.
 
     The interval is the mean time between passages in the direction of the first. It is the period
@@ -79,7 +79,7 @@ def section_columns(words: Iterable[str]) -> tuple[Column, ...]:
     return tuple(columns)
 
 
-def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> bytes:
+def parquet(columns: Iterable[ParquetColumn], values: dict[str, Any], part: str) -> bytes:
     """Return columns as a Parquet file, sealed as `part`.
 
     It is compressed with zstd, numbers with their bytes split, words by dictionary.

@@ -39,7 +39,7 @@ from .parquet import (
     TRANSITS,
     WANTS,
     WORDS,
-    Column,
+    ParquetColumn,
     section_columns,
 )
 from .row_constants import ANGLES, POSITION
@@ -183,13 +183,13 @@ class Request:
         return self.scene.run.sections or ()
 
     @cached_property
-    def columns(self) -> tuple[Column, ...]:
+    def columns(self) -> tuple[ParquetColumn, ...]:
         """The columns: number, fields that vary, quantities that are wanted, and sections."""
         number, *described = COLUMNS
         varied = []
         for key in self.table.values:
             kind = WORDS if key in WORD_FIELDS else "float64"
-            varied.append(Column(key, kind, f"{key} of the scene, the nearest double"))
+            varied.append(ParquetColumn(key, kind, f"{key} of the scene, the nearest double"))
         want = set(self.want)
         results = [column for column in described if not column.wants or want & set(column.wants)]
         return (number, *varied, *results, *section_columns(self.sections))

@@ -120,7 +120,8 @@ def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole
         "stability", "--scenes", path, "--methods", "scipy_dop853", *options, "--out", out
     )
     assert status == 0
-    assert f"<drifting> breaks on 1 of 1 scenes: {path} (wrong from t = 5.25 s on)." in text
+    words = " ".join(text.split())
+    assert f"<drifting> breaks on 1 of 1 scenes: {path} (wrong from t = 5.25 s on)." in words
     assert "right breaks on 0 of 1 scenes." in text
     document = json.loads((out / "stability.json").read_text())
     assert document["programs"] == programs
