@@ -9,12 +9,23 @@ import numpy as np
 
 from reference import FoucaultError, Scene
 from reference.engines.trajectory import Variants
-from reference.numbers.precision import Array
+from reference.model.start import Start
+from reference.numbers.precision import DOUBLE, Array
 
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import Deviation
-from .case import AS_IF, HARMLESS, Explanation, FileCase, FileRows, NamedModel, largest
-from .causes import NAMED
+from .case import (
+    AS_IF,
+    EITHER,
+    HARMLESS,
+    UNCORRECTED,
+    Explanation,
+    FileCase,
+    FileRows,
+    NamedModel,
+    largest,
+)
+from .claims import either_of, explanation_of, nothing
 from .conventions import (
     ROUGHLY,
     axes,
@@ -26,16 +37,18 @@ from .conventions import (
     shifted,
     unit_of_time,
 )
-from .fitted import MODELS, best_of, explanation_of
-from .formulas import of_formula
-from .gate import SHARE
+from .fitted import readings_of
+from .observed import of_observation
 from .programs import Program, SphericalPendulum
 from .slips import falls, growth, slip
 from .stepped import of_steps
+from .thresholds import NEEDED, RIVAL
 
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
+ROWS_A_SWING = 20  # that show what an integrator does
+MAPPED = 4000  # rows of which all are compared with maps of columns
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
 CLOSELY = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
@@ -52,13 +65,23 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
     """
     try:
         with np.errstate(all="ignore"):
-            return _explained(times, columns, scene, allowed_m)
+            found = _explained(times, columns, scene, allowed_m)
+            return replace(found, next_step=_next_step(times, scene))
     except (
         FoucaultError,
         ArithmeticError,
         np.linalg.LinAlgError,
     ):  # no program solves such a scene, or fits it
         return Explanation()
+
+
+def _next_step(times: Array, scene: Scene) -> str:
+    """Return what to do where no cause is known."""
+    frequency = Start.of(scene.exact, DOUBLE.prec).fastest_rate
+    most_s = 2 * math.pi / frequency / ROWS_A_SWING if frequency else math.inf
+    if len(times) > 1 and float(np.median(np.diff(times))) > most_s:
+        return f"print at least {ROWS_A_SWING} rows a swing, one every {most_s:.2g} s, and score them again."
+    return "let `--run 'PROGRAM {x0} {y0} … {setting}' --experiments` run your program with other numbers and steps."
 
 
 @dataclass(frozen=True)
@@ -89,6 +112,11 @@ class KnownScene:
         """The frequency of its swing in rad/s."""
         return math.sqrt(abs(self.right.theta()[5]))
 
+    def printed(self, times: Array, columns: dict[str, Array]) -> FileRows:
+        """Return the rows of a file as they are printed."""
+        positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
+        return digits(FileRows(times, positions, 0.0))
+
     def rows(
         self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True
     ) -> FileRows:
@@ -101,15 +129,15 @@ class KnownScene:
             late: whether the clock may be off.
         """
         start, length, frequency = self.start, self.right.length, self.frequency
-        positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
-        rows = heights(digits(FileRows(times, positions, 0.0)), length)
+        rows = heights(self.printed(times, columns), length)
         rows = clock(axes(rows, start, length, rename), start)
         rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
         return rows if rows.starts or not late else shifted(rows, start, frequency, length)
 
-    def case(self, rows: FileRows, allowed_m: float) -> FileCase:
-        """Return what is to be explained of rows, of which some are taken."""
-        chosen = _sample(len(rows.times))
+    def case(self, rows: FileRows, allowed_m: float, most: int = 0) -> FileCase:
+        """Return what is to be explained of rows, of which some are taken if they are more than `most`."""
+        count = len(rows.times)
+        chosen = np.arange(count) if count <= most else _sample(count)
         rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
         since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
         truth = self.model.states(self.scene.exact, since_release)[
@@ -132,7 +160,13 @@ def _explained(
 ) -> Explanation:
     problem = KnownScene.of(scene)
     rows = problem.rows(times, columns)
-    best = first_good_explanation(problem.case(rows, allowed_m), scene)
+    case = problem.case(rows, allowed_m)
+    heights_left_out = any(part.id in UNCORRECTED for part in rows.conventions)
+    if case.error > case.floor or heights_left_out:
+        observed = of_observation(problem.case(problem.printed(times, columns), allowed_m, MAPPED))
+        if observed is not None:
+            return likelier(observed, first_good_explanation(case, scene))
+    best = first_good_explanation(case, scene)
     alternatives = (
         list(other_conventions(rows, problem.start)) if best.corrected_m > allowed_m else []
     )
@@ -153,7 +187,7 @@ def _explained(
         if convention.id in ("rows_early", "rows_late")
     ]
     # what is left may look like it
-    if shifts and not best.known and shifts[0] < SHARE * best.corrected_m:
+    if shifts and not best.known and shifts[0] < RIVAL * best.corrected_m:
         rows = problem.rows(times, columns, late=False)
         best = first_good_explanation(problem.case(rows, allowed_m), scene)
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
@@ -167,25 +201,39 @@ def _explained(
     return best
 
 
+def likelier(observed: Explanation, program: Explanation) -> Explanation:
+    """Return the likelier one of an explanation by columns that are printed otherwise, and of one by a program."""
+    if not program.causes or program.corrected_m > program.allowed_m:
+        return observed
+    cheap, dear = sorted((observed, program), key=lambda explanation: explanation.price)
+    if cheap.price < dear.price:
+        return dear if NEEDED * dear.rest_m < cheap.rest_m else cheap
+    if RIVAL * observed.rest_m < program.rest_m:
+        return observed
+    if RIVAL * program.rest_m < observed.rest_m:
+        return program
+    return either_of(program, observed)
+
+
 def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
-        return _plain(case)
-    reading = best_of(case)
-    named = None if reading is None else explanation_of(case, reading)
-    if named is not None and named.corrected_m <= case.enough:
-        untyped = any(cause.stage == AS_IF for cause in named.causes)
-        simple = _of_approximation(case, scene, None) if untyped else None
-        return simple if simple is not None and simple.corrected_m <= case.enough else named
-    linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
-    second = None if linear and case.rows.cord is None else of_steps(case, reading)
-    second = second or of_formula(case)
-    return second or _of_approximation(case, scene, named) or named or _plain(case)
-
-
-def _plain(case: FileCase) -> Explanation:
-    """Return the explanation that has no cause."""
-    return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
+        return nothing(case)
+    named, best = explanation_of(case, readings_of(case))
+    if best is None or not named.causes:
+        return of_steps(case, None) or _of_approximation(case, scene, None) or named
+    program = best.reading.program
+    # on the sphere what a step does is known roughly; to know it better, the step is taken
+    roughly = program.kind == "sphere" and program.method is not None
+    if roughly or named.corrected_m > case.enough:
+        stepped = of_steps(case, best.reading)
+        if stepped is not None:
+            return stepped
+    if named.corrected_m > case.enough:
+        return _of_approximation(case, scene, named) or named
+    certain = all(cause.stage not in (AS_IF, EITHER) for cause in named.causes)
+    simple = None if certain else _of_approximation(case, scene, None)
+    return named if simple is None or simple.corrected_m > case.enough else simple
 
 
 def _of_approximation(
@@ -224,7 +272,7 @@ def _of_approximation(
     exact = corrected <= case.enough and all(
         convention.id in HARMLESS for convention in rows.conventions
     )
-    explanation = case.tested((cause,), left, NAMED)
+    explanation = case.tested((cause,), left, 1)
     return replace(explanation, model=model) if exact and explanation.causes else explanation
 
 

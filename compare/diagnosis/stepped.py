@@ -24,9 +24,11 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .causes import FITTED
+from .claims import explanation_of
 from .families import fit_pendulum
-from .fitted import best_of, explanation_of
+from .fitted import readings_of
+from .loops import TITLE as IN_TURN
+from .loops import LinearSteps, likely_loops
 from .phasors import METHODS
 from .programs import Program, SphericalPendulum
 from .readings import CauseReading
@@ -44,6 +46,7 @@ RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "heun": ((1.0,), (1 / 2, 1 / 2)),
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
+IN_TURN_WORDS = {"vx": "in_turn", "vy": "in_turn", "xy": "in_turn_drift"}
 LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
 FEWEST = 30  # rows that tell a motion: to have as many, twice as many steps are run
 TRIED = 24  # numbers of steps that are run at a time
@@ -76,6 +79,11 @@ class Steps(SphericalPendulum):
     every: int = 1
     spacing: float = 0.0
     near: tuple[float, ...] = ()
+    kind: str = "sphere"
+
+    def exact(self, theta: Array, times: Array) -> Array:
+        """Return x and y in m as an exact integration has them, shape (times, 2)."""
+        return super().rows(theta, times, 2)
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x and y in m, shape (times, 2)."""
@@ -131,6 +139,10 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
     hung = case.right.changed(length=case.rows.cord or case.right.length)
+    for loop in likely_loops(flat):
+        explanation = _of_steps(flat, loop)
+        if explanation is not None:
+            return explanation
     explanations = []
     for steps in likely_steps(
         replace(flat, right=hung), None if reading is None else reading.program
@@ -148,47 +160,52 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     return min(explanations, key=lambda explanation: explanation.score, default=None)
 
 
-def _of_steps(case: FileCase, steps: Steps) -> Explanation | None:
+def _of_steps(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
     """Return what is known of rows that some steps made; None if others did."""
-    rows, (pendulum, theta) = case.rows, case.pendulum_of(case.right)
+    rows = case.rows
     fit = fit_pendulum(case, steps, [np.array(steps.near)])
     if fit is None:
         return None
     theta, best = fit.theta, None
+    readings: list[CauseReading] = []
     moved = steps.rows(theta, rows.times, 2)
     for _ in range(READINGS):
-        effect, left = moved - pendulum.rows(theta, rows.times, 2), rms(rows.positions - moved)
+        effect, left = moved - steps.exact(theta, rows.times), rms(rows.positions - moved)
         if not left <= max(case.floor, STEP_LEFT * rms(effect)):
             return None
         if best is not None and left <= case.floor:
             break
         seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-        best = best_of(seen, stepped=True)
-        if best is None or best.reader.right.kind != "sphere":
+        readings = readings_of(seen, stepped=True)
+        _, best = explanation_of(seen, readings)
+        if best is None or best.reading.program.kind != steps.kind:
             return None
-        pendulum, theta = case.pendulum_of(best.program)
+        pendulum, theta = case.pendulum_of(best.reading.program)
         steps = replace(steps, **vars(pendulum))
         moved = steps.rows(theta, rows.times, 2)
-    effect = moved - pendulum.rows(theta, rows.times, 2)
+    effect = moved - steps.exact(theta, rows.times)
     residuals = rows.positions - moved
     if best is None or not largest(residuals) <= case.enough:
         return None
-    cause = step_cause(steps, effect)
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-    explanation, price = (
-        explanation_of(seen, best, cause),
-        sum(cause.cost for cause in best.causes) + FITTED,
-    )
-    tested = case.tested(explanation.causes, residuals, price)
+    explanation, _ = explanation_of(seen, [replace(best.reading, rest=rms(residuals)), *readings])
+    causes = (*explanation.causes, step_cause(steps, effect))
+    tested = case.tested(causes, residuals, len(causes))
     return tested if tested.causes else None
 
 
-def step_cause(steps: Steps, effect: Array) -> Deviation:
+def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:
     """Return the cause that a program takes some steps, which have an effect on its rows."""
     step = steps.spacing / steps.every
-    text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
-    word = f"integrator_{'rk2' if steps.method == 'heun' else steps.method}"
-    return Deviation(word, text, largest(effect), "integrator", step, step)
+    in_turn = steps.kind == "linear"
+    title = IN_TURN if in_turn else TITLES[steps.method]
+    word = (
+        IN_TURN_WORDS[steps.method[:2]]
+        if in_turn
+        else {"heun": "rk2"}.get(steps.method, steps.method)
+    )
+    text = f"integrates with {title} at a step of {step:.3g} s"
+    return Deviation(f"integrator_{word}", text, largest(effect), "integrator", step, step)
 
 
 def likely_steps(case: FileCase, near: Program | None) -> list[Steps]:

@@ -1,0 +1,394 @@
+"""The tests of a claim: the only place where a sentence about a program becomes certain.
+
+An explanation is a set of causes whose program was run. It is compared with the file column by column, with itself
+without each of its causes, and with every other explanation of the same price or less. What passes all tests is
+certain. Of explanations that the file does not tell apart the difference is said as "either … or …". What the motion is
+merely like is said as that, and the rest not at all.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference.numbers.precision import Array
+
+from ..candidates.candidate import Deviation
+from .case import AS_IF, EITHER, HARMLESS, Explanation, FileCase, NamedModel, largest, rms
+from .causes import Cause, shortest_decimal
+from .fitted import MODELS, adjusted_to, model_of, polished, sentences, sized
+from .readings import CauseReading
+from .thresholds import (
+    ALTERNATIVES,
+    CHANCE,
+    FIRST_PART,
+    HARM,
+    NEEDED,
+    RIVAL,
+    ROWS_A_NUMBER,
+    UNEXPLAINED,
+)
+
+LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
+FACTOR_DIGITS = 4  # that people type of a factor
+MOST_DIGITS = 7  # and of a number
+CATALOGUE = 80  # changes that a program may have, about
+# numbers that a step's error looks like
+STEP_LIKE = ("site.gravity", "pendulum.length", "pendulum.drag")
+ONE_NUMBER = ("site.gravity", "pendulum.length")  # of a linear motion their quotient alone is known
+
+
+def loose(size_m: float, stage: str = "integrator") -> Deviation:
+    """Return the cause that an integrator has an error, which one is not known."""
+    return Deviation("integrator_loose", LOOSE, size_m, stage)
+
+
+def harmless(case: FileCase, left: Array) -> bool:
+    """Return whether what an explanation leaves, shape (rows, 2 or 3), is in no column more than the file's error."""
+    errors = np.abs(case.rows.positions - case.truth).max(axis=0)
+    return bool((np.abs(left).max(axis=0) <= HARM * np.maximum(errors, case.resolution)).all())
+
+
+def explains(case: FileCase, left: Array) -> bool:
+    """Return whether what is left is within the tolerance, or the rounding of the file."""
+    return largest(left) <= case.enough
+
+
+def has_few_digits(value: float, doubt: float, most: int = MOST_DIGITS) -> bool:
+    """Return whether a person may have typed a number, since its shortest decimal within a doubt is no accident."""
+    doubt = max(doubt, 2.0**-50 * abs(value))
+    if abs(value) <= doubt:
+        return True
+    _, digits = shortest_decimal(value, doubt)
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
+    return digits <= most and 2 * doubt < CHANCE * unit
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A combination of causes whose program was run.
+
+    Attributes:
+        case: the file.
+        reading: the causes and their program.
+        left: what it leaves in m, shape (rows, 2 or 3).
+    """
+
+    case: FileCase
+    reading: CauseReading
+    left: Array
+
+    @classmethod
+    def of(cls, case: FileCase, reading: CauseReading) -> Hypothesis:
+        """Return the hypothesis of a reading, its program run."""
+        return cls(case, reading, case.left(reading.program))
+
+    @property
+    def rest(self) -> float:
+        """Root mean square in m of what is left; smaller residuals than rounding are equal."""
+        size = rms(self.left)
+        return max(size, self.case.resolution) if math.isfinite(size) else math.inf
+
+    @property
+    def largest_m(self) -> float:
+        """Largest distance in m of what is left."""
+        size = largest(self.left)
+        return size if math.isfinite(size) else math.inf
+
+    @property
+    def words(self) -> frozenset[str]:
+        """The ids of its causes, and of its model."""
+        words = {cause.id for cause in self.reading.causes}
+        if self.reading.program.kind != "sphere":
+            words.add(MODELS[self.reading.program.kind][0])
+        return frozenset(words)
+
+    @property
+    def numbers(self) -> list[Cause]:
+        """The causes with a fitted number that the rows do not show by themselves."""
+        return [cause for cause in self.reading.causes if cause.free and not self._shown(cause)]
+
+    @property
+    def untyped(self) -> list[Cause]:
+        """Those whose number nobody typed."""
+        return [cause for cause in self.numbers if not self._is_typed(cause)]
+
+    @property
+    def price(self) -> int:
+        """One for each change, named model, or number of few digits; two for any other number, and for a factor."""
+        model = self.reading.program.kind != "sphere"
+        dear = sum(not self._is_typed(cause, factors=False) for cause in self.numbers)
+        return len(self.reading.causes) + dear + model
+
+    def _shown(self, cause: Cause) -> bool:
+        """Return whether row 0 has the number itself: the place of the release."""
+        rows = self.case.rows
+        return cause.id in ("release.x", "release.y") and rows.starts and rows.times[0] == 0
+
+    def _is_typed(self, cause: Cause, factors: bool = True) -> bool:
+        """Return whether a person may have typed a number, or the factor by which a rate differs from the scene's.
+
+        The steps of a program may move its number by as much as the tolerance allows.
+        """
+        value = self.reading.value(cause)
+        doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
+        if cause.stage == "integrator":
+            return self._divides(value, doubt)
+        widest = doubt * max(1.0, self.case.allowed_m / self.rest)
+        if any(has_few_digits(value, within) for within in (doubt, widest)):
+            return True
+        scene = self.case.right.rate
+        factor = factors and cause.free == "rate"
+        return factor and has_few_digits(value / scene, doubt / abs(scene), FACTOR_DIGITS)
+
+    def _divides(self, step: float, doubt: float) -> bool:
+        """Return whether a step may go into the spacing of the rows a whole number of times."""
+        if not step > 0:
+            return False
+        count = float(np.ptp(self.case.rows.times[:2])) / step
+        return round(count) > 0 and abs(count - round(count)) <= max(
+            RIVAL * doubt * count / step, CHANCE
+        )
+
+    def refitted(self, reading: CauseReading) -> Hypothesis:
+        """Return the hypothesis of another reading, its numbers fitted to the same rows."""
+        return Hypothesis.of(self.case, polished(self.case, reading))
+
+    def has_number(self, rival: Hypothesis, cause: Cause) -> bool:
+        """Return whether its program has a number of a rival, within the rival's uncertainty, by another cause."""
+        if cause in self.reading.causes or cause.stage == "integrator":
+            return False
+        doubt = rival.reading.reader.uncertainty(rival.reading, cause, self.case.resolution)
+        mine = float(getattr(self.reading.program, cause.free))
+        return abs(rival.reading.value(cause) - mine) <= RIVAL * doubt
+
+    def without(self, word: str) -> Hypothesis:
+        """Return the hypothesis without a cause, or without its model, everything else fitted again."""
+        reading = self.reading
+        kind = reading.program.kind
+        causes = [cause for cause in reading.causes if cause.id == word]
+        fewer = reading.reader.without(reading, causes)
+        if not causes:  # the word is that of the model
+            kind = "sphere"
+        return self.refitted(replace(fewer, program=fewer.program.changed(kind=kind)))
+
+    def is_no_accident(self) -> bool:
+        """Return whether hardly any of all programs of its price, all numbers typed, would explain the rows as well.
+
+        Then what it leaves within the tolerance is a program's own error, which a free number takes up as well.
+        """
+        if self.untyped or not explains(self.case, self.left) or not self.case.error:
+            return False
+        programs = math.comb(CATALOGUE, self.price)
+        return programs * self.rest / self.case.error < CHANCE
+
+    def predicts(self) -> bool:
+        """Return whether its numbers, fitted to the first rows, meet the others as well as all do."""
+        names = [cause.free for cause in self.numbers]
+        times = self.case.rows.times
+        count = int(np.searchsorted(times, times[0] + FIRST_PART * (times[-1] - times[0])))
+        if not names or not 0 < count < len(times):
+            return True
+        program = adjusted_to(self.case.part(count), self.reading.program, names)
+        later = rms(self.case.left(program)[count:])
+        return later <= RIVAL * max(rms(self.left[count:]), self.case.resolution)
+
+    def enough_rows(self) -> bool:
+        """Return whether the rows are as many as can say anything of its numbers, and last for a swing."""
+        rows, numbers = self.case.rows, len(self.numbers)
+        if not numbers:
+            return True
+        swing = 2 * math.pi / self.case.frequency if self.case.frequency else 0.0
+        lasts = float(rows.times[-1]) >= swing
+        return lasts and len(rows.times) >= ROWS_A_NUMBER * numbers
+
+
+def simplest(hypotheses: Sequence[Hypothesis]) -> Hypothesis:
+    """Return the cheapest hypothesis, unless a dearer one leaves far less; those that explain the rows come first."""
+    case = hypotheses[0].case
+    enough = [one for one in hypotheses if explains(case, one.left)] or hypotheses
+    best, *dearer = sorted(enough, key=lambda one: (one.price, len(one.numbers), one.rest))
+    for one in dearer:
+        less = RIVAL if one.price == best.price else NEEDED
+        if less * one.rest <= best.rest and not (one.untyped and best.is_no_accident()):
+            best = one
+    return best
+
+
+def without_needless(best: Hypothesis) -> Hypothesis:
+    """Return a hypothesis without the causes without which about as little is left."""
+    while best.words:
+        fewer = [best.without(word) for word in sorted(best.words)]
+        shorter = min(fewer, key=lambda one: one.rest)
+        if shorter.rest >= RIVAL * best.rest:
+            break
+        best = shorter
+    return best
+
+
+def worth_saying(best: Hypothesis) -> tuple[Hypothesis, dict[str, float]]:
+    """Return a hypothesis without what is within the tolerance, and how many times as much is left without the rest."""
+    while best.words:
+        fewer = {word: best.without(word) for word in sorted(best.words)}
+        word = min(fewer, key=lambda word: fewer[word].largest_m)
+        if fewer[word].largest_m > best.case.allowed_m:
+            return best, {word: without.rest / best.rest for word, without in fewer.items()}
+        best = fewer[word]
+    return best, {}
+
+
+def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Return the other hypotheses that cost no more and leave no more than a few times as much."""
+    found: dict[frozenset[str], Hypothesis] = {}
+    for hypothesis in hypotheses:
+        near = hypothesis.rest <= RIVAL * best.rest
+        other = hypothesis.words != best.words and not hypothesis.words > best.words
+        same = any(best.has_number(hypothesis, cause) for cause in hypothesis.numbers)
+        if near and other and not same and hypothesis.price <= best.price:
+            found.setdefault(hypothesis.words, hypothesis)
+    return list(found.values())
+
+
+def told(
+    best: Hypothesis,
+    rivals: Sequence[Hypothesis],
+    reported: Hypothesis,
+    needs: dict[str, float],
+) -> Iterator[Deviation]:
+    """Yield what may be said of the causes of a hypothesis.
+
+    Args:
+        best: the hypothesis.
+        rivals: of it.
+        reported: the same without what is within the tolerance.
+        needs: how many times as much is left without each of its causes, by word.
+    """
+    explained = explains(best.case, best.left) or not best.untyped
+    sound = explained and best.predicts() and best.enough_rows()
+    common = best.words.intersection(*(rival.words for rival in rivals))
+    untyped = {cause.id for cause in best.untyped}
+    every = untyped.union(*({cause.id for cause in rival.untyped} for rival in rivals))
+    doubtful = (best.words - common) | untyped
+    by_step = False
+    if every & {*STEP_LIKE} and doubtful <= {*STEP_LIKE, "clock"}:
+        # what a step of no name does as well
+        common -= untyped
+        by_step = True
+    alternatives = [_said(best, best.words - common)]
+    alternatives += [_said(rival, rival.words - common) for rival in rivals]
+    alternatives += [("integrator_loose", LOOSE)] * by_step
+    differing = []
+    for cause in sized(best.case, reported.reading):
+        number = cause.id in untyped and cause.stage not in ("clock", "integrator")
+        if cause.id not in common:
+            differing.append(cause)
+        elif cause.id in untyped and cause.stage == "integrator" and sound:
+            yield loose(cause.size_m)
+        elif sound and needs.get(cause.id, 0.0) >= NEEDED and not number:
+            yield cause
+        else:
+            yield hedged(cause)
+    if differing:
+        yield from _either(differing, _different(alternatives), sound)
+
+
+def _said(hypothesis: Hypothesis, words: frozenset[str]) -> tuple[str, str]:
+    """Return some causes of a hypothesis as one alternative: their ids, and what is said of them."""
+    chosen = [
+        (word, text)
+        for word, text in sentences(hypothesis.case, hypothesis.reading)
+        if word in words
+    ]
+    return "+".join(word for word, _ in chosen), " and ".join(text for _, text in chosen)
+
+
+def _different(alternatives: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return alternatives without those that say another one, and more: what both say is enough."""
+    texts = {text: ids for ids, text in alternatives if text}
+    return [
+        (ids, text)
+        for text, ids in texts.items()
+        if not any(text.startswith(other) and text != other for other in texts)
+    ]
+
+
+def _either(
+    differing: Sequence[Deviation], alternatives: Sequence[tuple[str, str]], sound: bool
+) -> Iterator[Deviation]:
+    """Yield alternatives as one cause; where there are too many, those of the best as what the motion is like."""
+    first = max(differing, key=lambda cause: cause.size_m)
+    quotient = sum(ids in ONE_NUMBER for ids, _ in alternatives)
+    count = len(alternatives) - max(0, quotient - 1)
+    if not sound or count > ALTERNATIVES:
+        yield from map(hedged, differing)
+    elif len(alternatives) == 1:
+        ids, text = alternatives[0]
+        yield replace(first, id=ids, text=text)
+    else:
+        ids = "|".join(ids for ids, _ in alternatives)
+        text = f"either {', or '.join(text for _, text in alternatives)}"
+        yield Deviation(ids, text, first.size_m, EITHER)
+
+
+def either_of(first: Explanation, second: Explanation) -> Explanation:
+    """Return the explanation that one of two is true."""
+    alternatives = []
+    size_m = 0.0
+    for explanation in (first, second):
+        parts = [*explanation.causes, *explanation.conventions]
+        size_m = max(size_m, *(part.size_m for part in parts))
+        ids = "+".join(part.id for part in parts)
+        alternatives.append((ids, " and ".join(part.text for part in parts)))
+    text = f"either {', or '.join(text for _, text in alternatives)}"
+    cause = Deviation("|".join(ids for ids, _ in alternatives), text, size_m, EITHER)
+    return replace(first, causes=(cause,), conventions=(), model=None)
+
+
+def hedged(cause: Deviation) -> Deviation:
+    """Return a cause as one that the motion is merely like."""
+    text = f"moves like one that {cause.text}"
+    return replace(cause, id=f"{AS_IF}.{cause.id}", stage=AS_IF, text=text)
+
+
+def explanation_of(
+    case: FileCase, readings: Sequence[CauseReading], step: Deviation | None = None
+) -> tuple[Explanation, Hypothesis | None]:
+    """Return what may be said of a file, and the hypothesis behind it; no cause where no reading passes the tests.
+
+    Args:
+        case: the file.
+        readings: combinations of causes whose programs were run.
+        step: that was taken from the rows before they were read, or None.
+    """
+    hypotheses = [Hypothesis.of(case, reading) for reading in readings]
+    hypotheses = [one for one in hypotheses if harmless(case, one.left) and one.rest < math.inf]
+    if not hypotheses:
+        return nothing(case), None
+    best = without_needless(simplest(hypotheses))
+    reported, needs = worth_saying(best)
+    enough = explains(case, reported.left) or rms(reported.left) <= UNEXPLAINED * case.error
+    if not enough or not harmless(case, reported.left):
+        return nothing(case), best
+    causes = [*told(best, rivals_of(best, hypotheses), reported, needs), *filter(None, [step])]
+    left_m = largest(reported.left)
+    explanation = case.explanation(tuple(causes), left_m, rms(reported.left), reported.price)
+    return replace(explanation, model=_model(case, reported, causes)), best
+
+
+def _model(case: FileCase, best: Hypothesis, causes: Sequence[Deviation]) -> NamedModel | None:
+    """Return the simplification that all causes make up; None if they are none, or not certain."""
+    simple = {cause.stage for cause in causes} <= {"gravity", "model"}
+    plain = all(convention.id in HARMLESS for convention in case.rows.conventions)
+    left_m = largest(best.left)
+    if not (causes and simple and plain and left_m <= case.allowed_m):
+        return None
+    costs_m = largest(case.rows.positions - case.truth)
+    return model_of(best.reading.program.kind, case.right, causes, left_m, costs_m)
+
+
+def nothing(case: FileCase) -> Explanation:
+    """Return the explanation that has no cause."""
+    return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
