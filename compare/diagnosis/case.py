@@ -284,7 +284,7 @@ class FileCase:
         errors = self.rows.positions - self.truth
         own = np.maximum(np.abs(errors).max(axis=0), self.resolution)
         if causes and (np.abs(residuals).max(axis=0) > HARM * own).any():
-            return self.explanation((), largest(errors), self.error, 0.0)
+            return self.explanation((), largest(errors), self.error, 0)
         return self.explanation(causes, largest(residuals), rms(residuals), price)
 
     def explanation(

@@ -43,7 +43,8 @@ ONE_NUMBER = ("site.gravity", "pendulum.length")  # of a linear motion their quo
 
 def loose(size_m: float, stage: str = "integrator") -> Deviation:
     """Return the cause that an integrator has an error, which one is not known."""
-    return Deviation("integrator_loose", LOOSE, size_m, stage)
+    cause = Deviation("integrator_loose", LOOSE, size_m, stage)
+    return hedged(cause) if stage == AS_IF else cause
 
 
 def harmless(case: FileCase, left: Array) -> bool:
@@ -176,14 +177,19 @@ class Hypothesis:
         return self.refitted(replace(fewer, program=fewer.program.changed(kind=kind)))
 
     def is_no_accident(self) -> bool:
-        """Return whether hardly any of all programs of its price, all numbers typed, would explain the rows as well.
+        """Return whether hardly any of all known causes would explain the rows as well in place of one of its own.
 
         Then what it leaves within the tolerance is a program's own error, which a free number takes up as well.
         """
-        if self.untyped or not explains(self.case, self.left) or not self.case.error:
+        if self.untyped or not explains(self.case, self.left):
             return False
-        programs = math.comb(CATALOGUE, self.price)
-        return programs * self.rest / self.case.error < CHANCE
+        least = min((self.without(word).rest for word in self.words), default=0.0)
+        return CATALOGUE * self.rest < CHANCE * least
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether what it leaves is rounding: as the steps of a method leave it, if it is the right one."""
+        return self.rest <= NEEDED * self.case.resolution
 
     def predicts(self) -> bool:
         """Return whether its numbers, fitted to the first rows, meet the others as well as all do."""
@@ -267,7 +273,9 @@ def told(
         needs: how many times as much is left without each of its causes, by word.
     """
     explained = explains(best.case, best.left) or not best.untyped
-    sound = explained and best.predicts() and best.enough_rows()
+    sound = best.predicts() and best.enough_rows()
+    # where not even free numbers explain the rows, no other cause may be about as good by accident
+    needed = NEEDED if explained else CATALOGUE / CHANCE
     common = best.words.intersection(*(rival.words for rival in rivals))
     untyped = {cause.id for cause in best.untyped}
     every = untyped.union(*({cause.id for cause in rival.untyped} for rival in rivals))
@@ -285,14 +293,14 @@ def told(
         number = cause.id in untyped and cause.stage not in ("clock", "integrator")
         if cause.id not in common:
             differing.append(cause)
-        elif cause.id in untyped and cause.stage == "integrator" and sound:
-            yield loose(cause.size_m)
-        elif sound and needs.get(cause.id, 0.0) >= NEEDED and not number:
+        elif cause.stage == "integrator" and not (cause.id not in untyped and best.is_exact):
+            yield loose(cause.size_m, "integrator" if sound and not untyped else AS_IF)
+        elif sound and needs.get(cause.id, 0.0) >= needed and not number:
             yield cause
         else:
             yield hedged(cause)
     if differing:
-        yield from _either(differing, _different(alternatives), sound)
+        yield from _either(differing, _different(alternatives), sound and explained)
 
 
 def _said(hypothesis: Hypothesis, words: frozenset[str]) -> tuple[str, str]:
@@ -391,4 +399,4 @@ def _model(case: FileCase, best: Hypothesis, causes: Sequence[Deviation]) -> Nam
 
 def nothing(case: FileCase) -> Explanation:
     """Return the explanation that has no cause."""
-    return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0.0)
+    return case.explanation((), largest(case.rows.positions - case.truth), case.error, 0)

@@ -16,7 +16,6 @@ from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import Deviation
 from .case import (
     AS_IF,
-    EITHER,
     HARMLESS,
     UNCORRECTED,
     Explanation,
@@ -46,6 +45,7 @@ from .thresholds import NEEDED, RIVAL
 
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
+MOST_ROWS = 20_000  # that are looked at: the first half of them, and as many evenly spaced
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 ROWS_A_SWING = 20  # that show what an integrator does
 MAPPED = 4000  # rows of which all are compared with maps of columns
@@ -63,6 +63,12 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         scene: in the reading that the file was scored in.
         allowed_m: distance in m that counts as agreement.
     """
+    if len(times) > MOST_ROWS:
+        first = np.arange(MOST_ROWS // 2)
+        even = np.linspace(MOST_ROWS // 2, len(times) - 1, MOST_ROWS // 2).astype(np.int64)
+        chosen = np.concatenate([first, even])
+        times = times[chosen]
+        columns = {name: column[chosen] for name, column in columns.items()}
     try:
         with np.errstate(all="ignore"):
             found = _explained(times, columns, scene, allowed_m)
@@ -224,14 +230,15 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
         return of_steps(case, None) or _of_approximation(case, scene, None) or named
     program = best.reading.program
     # on the sphere what a step does is known roughly; to know it better, the step is taken
-    roughly = program.kind == "sphere" and program.method is not None
+    # and in a linear model it is known exactly, if it is a method that has a name
+    roughly = program.method is not None and (program.kind == "sphere" or not best.is_exact)
     if roughly or named.corrected_m > case.enough:
         stepped = of_steps(case, best.reading)
         if stepped is not None:
             return stepped
     if named.corrected_m > case.enough:
         return _of_approximation(case, scene, named) or named
-    certain = all(cause.stage not in (AS_IF, EITHER) for cause in named.causes)
+    certain = all(cause.stage != AS_IF for cause in named.causes)
     simple = None if certain else _of_approximation(case, scene, None)
     return named if simple is None or simple.corrected_m > case.enough else simple
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,15 @@ from .programs import SphericalPendulum, phasors_of
 # velocities is the same motion
 ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
 DAMPED = tuple(f"{order} factor" for order in ORDERS)
-TITLE = "semi-implicit Euler, its velocities updated one after the other, the second with the first one's new value,"
+# positions with h²/2 a, then velocities with the mean of a before and after, both of the old velocity
+VERLET = "verlet"
+IN_TURN = "semi-implicit Euler, its velocities updated one after the other, the second with the first one's new value,"
+TITLES = {
+    "vx": ("in_turn", IN_TURN),
+    "vy": ("in_turn", IN_TURN),
+    "xy": ("in_turn_drift", f"{IN_TURN} positions first,"),
+    "ve": ("leapfrog", "velocity Verlet, both accelerations of the old velocity,"),
+}
 PHASES = (0.006, 0.02, 0.06, 0.2)  # ωh of a first step
 NEWTON = 30  # steps of a fit
 GAIN = 0.97  # of what was left: a step that leaves more ends a fit
@@ -43,13 +52,18 @@ def step_matrix(order: str, theta: Array, h: float) -> Array:
     """Return one step of x, y, vx, vy, 1 as a matrix, shape (5, 5)."""
     length, drag = theta[11], theta[6]
     inside = 0.0 if "factor" in order else -drag
-    kicks = {
+    kicks: dict[str, tuple[int, list[Any]]] = {
         "vx": (2, [theta[5], 0.0, inside, 2 * theta[2], theta[3] * length]),
         "vy": (3, [0.0, theta[5], -2 * theta[2], inside, theta[4] * length]),
         "x": (0, [0.0, 0.0, 1.0, 0.0, 0.0]),
         "y": (1, [0.0, 0.0, 0.0, 1.0, 0.0]),
     }
     matrix = np.eye(5)
+    if order == VERLET:
+        both = np.array([kicks["vx"][1], kicks["vy"][1]])
+        matrix[:2] += h * np.eye(5)[2:4] + h * h / 2 * both
+        matrix[2:4] += h / 2 * (both + both @ matrix)
+        return matrix
     for statement in order.removesuffix(" factor").replace("xy", "x y").split():
         row, rates = kicks[statement]
         one = np.eye(5)
@@ -99,6 +113,11 @@ class LinearSteps(SphericalPendulum):
             matrix = matrix @ matrix
         return np.asarray(states[at, :2])
 
+    @property
+    def title(self) -> tuple[str, str]:
+        """Its word, and what people call it."""
+        return TITLES[self.method[:2]]
+
     def exact(self, theta: Array, times: Array) -> Array:
         """Return x and y in m as an exact integration has them, shape (times, 2)."""
         plane = phasors_of(theta, -theta[5], complex(theta[7], theta[8])).at(times)
@@ -121,7 +140,7 @@ def likely_loops(case: FileCase) -> list[LinearSteps]:
         return []
     slows = abs(fitted[0].drag) * float(rows.times[-1]) > NEAR
     for free in (FITTED, PUSHED):
-        for order in (*ORDERS, *DAMPED) if slows else ORDERS:
+        for order in (*ORDERS, VERLET, *DAMPED) if slows else (*ORDERS, VERLET):
             for phase in PHASES:
                 steps, size = _fitted(case, order, phase / frequency, fitted[0], free)
                 if size <= CLOSE * case.resolution and _is_whole(steps.every):

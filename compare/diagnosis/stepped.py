@@ -27,7 +27,6 @@ from .case import AS_IF, Explanation, FileCase, largest, rms
 from .claims import explanation_of
 from .families import fit_pendulum
 from .fitted import readings_of
-from .loops import TITLE as IN_TURN
 from .loops import LinearSteps, likely_loops
 from .phasors import METHODS
 from .programs import Program, SphericalPendulum
@@ -46,7 +45,6 @@ RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "heun": ((1.0,), (1 / 2, 1 / 2)),
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
-IN_TURN_WORDS = {"vx": "in_turn", "vy": "in_turn", "xy": "in_turn_drift"}
 LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
 FEWEST = 30  # rows that tell a motion: to have as many, twice as many steps are run
 TRIED = 24  # numbers of steps that are run at a time
@@ -80,6 +78,11 @@ class Steps(SphericalPendulum):
     spacing: float = 0.0
     near: tuple[float, ...] = ()
     kind: str = "sphere"
+
+    @property
+    def title(self) -> tuple[str, str]:
+        """Its word, and what people call it."""
+        return "rk2" if self.method == "heun" else self.method, TITLES[self.method]
 
     def exact(self, theta: Array, times: Array) -> Array:
         """Return x and y in m as an exact integration has them, shape (times, 2)."""
@@ -197,13 +200,7 @@ def _of_steps(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
 def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:
     """Return the cause that a program takes some steps, which have an effect on its rows."""
     step = steps.spacing / steps.every
-    in_turn = steps.kind == "linear"
-    title = IN_TURN if in_turn else TITLES[steps.method]
-    word = (
-        IN_TURN_WORDS[steps.method[:2]]
-        if in_turn
-        else {"heun": "rk2"}.get(steps.method, steps.method)
-    )
+    word, title = steps.title
     text = f"integrates with {title} at a step of {step:.3g} s"
     return Deviation(f"integrator_{word}", text, largest(effect), "integrator", step, step)
 

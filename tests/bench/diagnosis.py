@@ -303,7 +303,9 @@ def records(corpus: str, seed: int, count: int) -> Iterator[dict[str, Any]]:
                     rates = made.rng.uniform(0.05, 3, 6) * 2 * np.pi / made.period
                     waves = np.sin(times[:, None] * rates + made.rng.uniform(0, 6, 6)).sum(axis=1)
                     q[column] = q[column] + scale * waves / 6
-            yield record(name, made.scene, times, q, made.allowed_m, made.true, made.true, made.wrong)
+            yield record(
+                name, made.scene, times, q, made.allowed_m, made.true, made.true, made.wrong
+            )
 
 
 def wild(name: str) -> dict[str, Any]:
