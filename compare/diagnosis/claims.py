@@ -121,7 +121,8 @@ class Hypothesis:
     def price(self) -> int:
         """One for each change, named model, or number of few digits; two for any other number, and for a factor."""
         model = self.reading.program.kind != "sphere"
-        dear = sum(not self._is_typed(cause, factors=False) for cause in self.numbers)
+        inputs = [cause for cause in self.numbers if cause.stage != "integrator"]
+        dear = sum(not self._is_typed(cause, factors=False) for cause in inputs)
         return len(self.reading.causes) + dear + model
 
     def _shown(self, cause: Cause) -> bool:
@@ -188,8 +189,12 @@ class Hypothesis:
 
     @property
     def is_exact(self) -> bool:
-        """Whether what it leaves is rounding: as the steps of a method leave it, if it is the right one."""
-        return self.rest <= NEEDED * self.case.resolution
+        """Whether what it leaves is rounding: as the steps of a method leave it, if it is the right one.
+
+        Numbers that nobody typed take up what another method leaves.
+        """
+        most = 1.0 if self.untyped else NEEDED
+        return self.rest <= most * self.case.resolution
 
     def predicts(self) -> bool:
         """Return whether its numbers, fitted to the first rows, meet the others as well as all do."""
@@ -247,11 +252,15 @@ def worth_saying(best: Hypothesis) -> tuple[Hypothesis, dict[str, float]]:
 
 
 def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """Return the other hypotheses that cost no more and leave no more than a few times as much."""
+    """Return the other hypotheses that cost no more and leave no more than a few times as much.
+
+    Beside numbers that nobody typed it is enough that one without any explains the rows.
+    """
     found: dict[frozenset[str], Hypothesis] = {}
     for hypothesis in hypotheses:
-        near = hypothesis.rest <= RIVAL * best.rest
-        other = hypothesis.words != best.words and not hypothesis.words > best.words
+        typed = best.untyped and not hypothesis.untyped and explains(best.case, hypothesis.left)
+        near = typed or hypothesis.rest <= RIVAL * best.rest
+        other = not hypothesis.words >= best.words and not hypothesis.words < best.words
         same = any(best.has_number(hypothesis, cause) for cause in hypothesis.numbers)
         if near and other and not same and hypothesis.price <= best.price:
             found.setdefault(hypothesis.words, hypothesis)

@@ -17,7 +17,6 @@ from ..candidates.candidate import Deviation
 from .case import (
     AS_IF,
     HARMLESS,
-    UNCORRECTED,
     Explanation,
     FileCase,
     FileRows,
@@ -45,11 +44,13 @@ from .thresholds import NEEDED, RIVAL
 
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
+LEFT_OUT = ("z_constant", "off_the_sphere")  # heights that no explanation is asked for
 MOST_ROWS = 20_000  # that are looked at: the first half of them, and as many evenly spaced
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 ROWS_A_SWING = 20  # that show what an integrator does
 MAPPED = 4000  # rows of which all are compared with maps of columns
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
+OF_PAPERS = 2  # price of an approximation: a model, and what it is about
 CLOSELY = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
 
@@ -167,7 +168,7 @@ def _explained(
     problem = KnownScene.of(scene)
     rows = problem.rows(times, columns)
     case = problem.case(rows, allowed_m)
-    heights_left_out = any(part.id in UNCORRECTED for part in rows.conventions)
+    heights_left_out = any(part.id in LEFT_OUT for part in rows.conventions)
     if case.error > case.floor or heights_left_out:
         observed = of_observation(problem.case(problem.printed(times, columns), allowed_m, MAPPED))
         if observed is not None:
@@ -208,7 +209,10 @@ def _explained(
 
 
 def likelier(observed: Explanation, program: Explanation) -> Explanation:
-    """Return the likelier one of an explanation by columns that are printed otherwise, and of one by a program."""
+    """Return the likelier one of an explanation of another kind, which explains the rows, and of one by a program.
+
+    Another kind is columns that are printed otherwise, or an approximation of the source papers.
+    """
     if not program.causes or program.corrected_m > program.allowed_m:
         return observed
     cheap, dear = sorted((observed, program), key=lambda explanation: explanation.price)
@@ -234,13 +238,15 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
     roughly = program.method is not None and (program.kind == "sphere" or not best.is_exact)
     if roughly or named.corrected_m > case.enough:
         stepped = of_steps(case, best.reading)
-        if stepped is not None:
+        if stepped is not None and stepped.rest_m <= named.rest_m:
             return stepped
     if named.corrected_m > case.enough:
         return _of_approximation(case, scene, named) or named
     certain = all(cause.stage != AS_IF for cause in named.causes)
     simple = None if certain else _of_approximation(case, scene, None)
-    return named if simple is None or simple.corrected_m > case.enough else simple
+    if simple is not None and simple.corrected_m > case.enough:
+        return named
+    return named if simple is None else likelier(simple, named)
 
 
 def _of_approximation(
@@ -279,7 +285,7 @@ def _of_approximation(
     exact = corrected <= case.enough and all(
         convention.id in HARMLESS for convention in rows.conventions
     )
-    explanation = case.tested((cause,), left, 1)
+    explanation = case.tested((cause,), left, OF_PAPERS)
     return replace(explanation, model=model) if exact and explanation.causes else explanation
 
 

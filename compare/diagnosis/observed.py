@@ -77,8 +77,10 @@ def maps_of_column(case: FileCase, column: int) -> Iterator[ColumnMap]:
     yield mapped("mirrored", f"prints −{name} in its column of {name}", -true)
     square = float(true @ true)
     factor = float(true @ printed) / square if square else 0.0
-    if abs(factor) * rms(true[:, None]) > case.resolution:
-        text, price = number(factor, _doubt(case, printed - factor * true) / rms(true[:, None]))
+    size = rms(true[:, None])
+    # a constant and a mirrored column have words of their own
+    if min(abs(factor), abs(factor + 1)) * size > RIVAL * case.resolution:
+        text, price = number(factor, _doubt(case, printed - factor * true) / size)
         yield mapped("scaled", f"prints {name} times {text}", factor * true, 1 + price)
     shift = float(np.mean(printed - true))
     text, price = number(shift, _doubt(case, printed - true - shift))

@@ -321,6 +321,8 @@ def wild(name: str) -> dict[str, Any]:
     either = [[w for w in each for w in w.split("+")] for each in alternatives(explanation)]
     covered = words | {wild_programs.SAME.get(w, w) for each in either for w in each}
     wrong = words - true
+    if any(word.startswith("integrator") for word in true):  # true, if less is said than could be
+        wrong -= {"integrator_loose"}
     lines = [] if explanation is None else list(explanation.lines())
     grade = (
         "whole"
