@@ -14,7 +14,7 @@ from ..candidates.candidate import Deviation
 from .advice import advice
 from .phasors import sinc
 from .programs import NAMES, Program, SphericalPendulum
-from .thresholds import FINEST, HARM, ROUNDED
+from .thresholds import FINEST, RIVAL, ROUNDED
 
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
@@ -283,7 +283,7 @@ class FileCase:
         """
         errors = self.rows.positions - self.truth
         own = np.maximum(np.abs(errors).max(axis=0), self.resolution)
-        if causes and (np.abs(residuals).max(axis=0) > HARM * own).any():
+        if causes and (np.abs(residuals).max(axis=0) > RIVAL * own).any():
             return self.explanation((), largest(errors), self.error, 0)
         return self.explanation(causes, largest(residuals), rms(residuals), price)
 

@@ -23,19 +23,17 @@ from .fitted import MODELS, adjusted_to, model_of, polished, sentences, sized
 from .readings import CauseReading
 from .thresholds import (
     ALTERNATIVES,
+    CATALOGUE,
     CHANCE,
+    FACTOR_DIGITS,
     FIRST_PART,
-    HARM,
+    MOST_DIGITS,
     NEEDED,
     RIVAL,
     ROWS_A_NUMBER,
-    UNEXPLAINED,
 )
 
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
-FACTOR_DIGITS = 4  # that people type of a factor
-MOST_DIGITS = 7  # and of a number
-CATALOGUE = 80  # changes that a program may have, about
 # numbers that a step's error looks like
 STEP_LIKE = ("site.gravity", "pendulum.length", "pendulum.drag")
 ONE_NUMBER = ("site.gravity", "pendulum.length")  # of a linear motion their quotient alone is known
@@ -50,7 +48,7 @@ def loose(size_m: float, stage: str = "integrator") -> Deviation:
 def harmless(case: FileCase, left: Array) -> bool:
     """Return whether what an explanation leaves, shape (rows, 2 or 3), is in no column more than the file's error."""
     errors = np.abs(case.rows.positions - case.truth).max(axis=0)
-    return bool((np.abs(left).max(axis=0) <= HARM * np.maximum(errors, case.resolution)).all())
+    return bool((np.abs(left).max(axis=0) <= RIVAL * np.maximum(errors, case.resolution)).all())
 
 
 def explains(case: FileCase, left: Array) -> bool:
@@ -386,7 +384,7 @@ def explanation_of(
         return nothing(case), None
     best = without_needless(simplest(hypotheses))
     reported, needs = worth_saying(best)
-    enough = explains(case, reported.left) or rms(reported.left) <= UNEXPLAINED * case.error
+    enough = explains(case, reported.left) or NEEDED**2 * rms(reported.left) <= case.error
     if not enough or not harmless(case, reported.left):
         return nothing(case), best
     causes = [*told(best, rivals_of(best, hypotheses), reported, needs), *filter(None, [step])]

@@ -12,17 +12,15 @@ FINEST = 1e-3
 # tests/compare/diagnosis/test_claims.py: test_rounding_is_no_error
 ROUNDED = 1.5
 
-# Times a column's own error: an explanation that leaves more of a column is refuted by it.
-# tests/compare/diagnosis/test_false_causes.py: test_no_cause_is_stated_that_spoils_a_right_column
-HARM = 3.0
-
-# Times the residual: without a cause that is certain as much is left, everything else fitted again.
+# Times the residual: without a cause that is certain as much is left, everything else fitted again. Where the tolerance
+# is not reached, so many times as much, squared, has to be explained of the error for anything to be named.
 # tests/compare/diagnosis/test_claims.py: test_what_is_hardly_needed_is_not_certain
 NEEDED = 10.0
 
-# Times the residual: without a cause that the motion is like as much is left; and of two explanations that leave less
-# than this of each other, neither is refuted by the other.
-# tests/compare/diagnosis/test_claims.py: test_rivals_are_told_beside_each_other
+# Times a residual: what is no more than this is about as good. So are two explanations; one without a cause, which then
+# is not needed; the last rows, predicted from the first; and a column that an explanation leaves worse than it was.
+# tests/compare/diagnosis/test_claims.py: test_rivals_are_told_beside_each_other;
+# tests/compare/diagnosis/test_false_causes.py: test_no_cause_is_stated_that_spoils_a_right_column
 RIVAL = 3.0
 
 # Of the rows, from the first one: numbers that are fitted to them have to predict the others.
@@ -41,9 +39,14 @@ ALTERNATIVES = 3
 # tests/compare/diagnosis/test_claims.py: test_few_digits
 CHANCE = 0.01
 
-# Of the error that may be left where the tolerance is not reached, so that a cause is named at all.
-# tests/compare/diagnosis/test_explanation.py: test_nothing_is_named_of_a_smooth_random_error
-UNEXPLAINED = 0.01
+# Digits of a number that people type, and of a factor.
+# tests/compare/diagnosis/test_claims.py: test_few_digits
+MOST_DIGITS = 7
+FACTOR_DIGITS = 4
+
+# Changes that a program may have, about: the number of accidents that may be mistaken for a cause.
+# tests/compare/diagnosis/test_wild.py: test_true_causes_are_named_and_none_is_wrong
+CATALOGUE = 80
 
 # Of the difference between two versions: causes that explain less of it are no change.
 # tests/compare/diagnosis/test_claims.py: test_a_change_explains_what_lies_between_the_versions
