@@ -303,11 +303,23 @@ def told(
         elif cause.stage == "integrator" and not (cause.id not in untyped and best.is_exact):
             yield loose(cause.size_m, "integrator" if sound and not untyped else AS_IF)
         elif sound and needs.get(cause.id, 0.0) >= needed and not number:
-            yield cause
+            yield _in_whole_steps(cause, float(np.ptp(best.case.rows.times[:2])))
         else:
             yield hedged(cause)
     if differing:
         yield from _either(differing, _different(alternatives), sound and explained)
+
+
+def _in_whole_steps(cause: Deviation, spacing: float) -> Deviation:
+    """Return a cause, its step replaced by the one that goes into the spacing of the rows, if there is only one."""
+    if cause.stage != "integrator" or not cause.value or cause.uncertainty is None:
+        return cause
+    count = spacing / cause.value
+    if RIVAL * cause.uncertainty * count / cause.value >= 1 / 2 or not round(count):
+        return cause
+    step = spacing / round(count)
+    text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
+    return replace(cause, text=text, value=step, shift=step)
 
 
 def _said(hypothesis: Hypothesis, words: frozenset[str]) -> tuple[str, str]:

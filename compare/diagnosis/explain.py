@@ -51,6 +51,7 @@ ROWS_A_SWING = 20  # that show what an integrator does
 MAPPED = 4000  # rows of which all are compared with maps of columns
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
 OF_PAPERS = 2  # price of an approximation: a model, and what it is about
+SIMPLE = 2  # price of a map of columns beside which no steps are tried
 CLOSELY = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
 
@@ -171,6 +172,8 @@ def _explained(
     heights_left_out = any(part.id in LEFT_OUT for part in rows.conventions)
     if case.error > case.floor or heights_left_out:
         observed = of_observation(problem.case(problem.printed(times, columns), allowed_m, MAPPED))
+        if observed is not None and observed.price <= SIMPLE:
+            return likelier(observed, explanation_of(case, readings_of(case))[0])
         if observed is not None:
             return likelier(observed, first_good_explanation(case, scene))
     best = first_good_explanation(case, scene)
