@@ -262,6 +262,9 @@ def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypoth
         same = any(best.has_number(hypothesis, cause) for cause in hypothesis.numbers)
         if near and other and not same and hypothesis.price <= best.price:
             found.setdefault(hypothesis.words, hypothesis)
+    # few digits beat many
+    if any(rival.untyped for rival in found.values()) and best.is_no_accident():
+        return [rival for rival in found.values() if not rival.untyped]
     return list(found.values())
 
 
