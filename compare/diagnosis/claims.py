@@ -121,6 +121,11 @@ class Hypothesis:
         model = self.reading.program.kind != "sphere"
         inputs = [cause for cause in self.numbers if cause.stage != "integrator"]
         dear = sum(not self._is_typed(cause, factors=False) for cause in inputs)
+        # another sign is a change of its own
+        dear += sum(
+            self.reading.value(cause) * float(getattr(self.case.right, cause.free)) < 0
+            for cause in inputs
+        )
         return len(self.reading.causes) + dear + model
 
     def _shown(self, cause: Cause) -> bool:
