@@ -305,7 +305,10 @@ def told(
     alternatives += [("integrator_loose", LOOSE)] * by_step
     differing = []
     for cause in sized(best.case, reported.reading):
-        number = cause.id in untyped and cause.stage not in ("clock", "integrator")
+        # a clock is no input: any factor will do, but not beside other numbers that take up what it leaves
+        number = cause.id in untyped and cause.stage != "integrator"
+        if cause.stage == "clock":
+            number = bool(untyped - {cause.id})
         if cause.id not in common:
             differing.append(cause)
         elif cause.stage == "integrator" and not (cause.id not in untyped and best.is_exact):

@@ -8,7 +8,7 @@ is no named method: the second line has the new vx. One step is a 4 × 4 matrix,
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,9 @@ from reference.numbers.precision import Array
 
 from ..observed.least_squares import by_differences, gauss_newton
 from .case import FileCase
-from .families import windows
 from .phasors import Phasors, fit_phasors
 from .programs import SphericalPendulum, phasors_of
+from .thresholds import NEEDED
 
 # statements of one step: v of one axis, x and y of both, and a factor on both velocities; an axis moved between the
 # velocities is the same motion
@@ -27,22 +27,23 @@ ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
 DAMPED = tuple(f"{order} factor" for order in ORDERS)
 # positions with h²/2 a, then velocities with the mean of a before and after, both of the old velocity
 VERLET = "verlet"
+# half the velocities, the positions, half the velocities again, of what they are by then
+LEAPFROG = "leapfrog"
+EXPLICIT = "both accelerations of the velocity before them,"
 IN_TURN = "semi-implicit Euler, its velocities updated one after the other, the second with the first one's new value,"
 TITLES = {
     "vx": ("in_turn", IN_TURN),
     "vy": ("in_turn", IN_TURN),
     "xy": ("in_turn_drift", f"{IN_TURN} positions first,"),
-    "ve": ("leapfrog", "velocity Verlet, both accelerations of the old velocity,"),
+    "ve": ("leapfrog", f"velocity Verlet, {EXPLICIT}"),
+    "le": ("leapfrog", f"leapfrog, {EXPLICIT}"),
 }
-PHASES = (0.006, 0.02, 0.06, 0.2)  # ωh of a first step
-NEWTON = 30  # steps of a fit
-GAIN = 0.97  # of what was left: a step that leaves more ends a fit
+FINEST = 0.002  # ωh: the shortest step that is tried
+TRIED = 10  # numbers of steps that are tried at a time
+NEWTON = 8  # steps of a fit
+GAIN = 0.9  # of what was left: a step that leaves more ends a fit
 LEAST = 24  # rows
-LARGEST = 50.0  # logarithm of a step in s, either way
-MOST_STEPS = 1e5  # from row to row
-CLOSE = 10.0  # times the rounding: what a fit may leave, before its steps are a whole number
-WHOLE = 0.02  # of a step: how far a whole number of them may be from the spacing of the rows
-NEAR = 1e-3  # of the amplitude that a first fit may leave
+NEAR = 1e-3  # of the amplitude that two phasors may leave
 # of theta, beside the step: turn, pull, drag and place of the release; and its velocity, if it is not the scene's
 FITTED = (2, 3, 4, 5, 6, 7, 8)
 PUSHED = (*FITTED, 9, 10)
@@ -64,6 +65,11 @@ def step_matrix(order: str, theta: Array, h: float) -> Array:
         matrix[:2] += h * np.eye(5)[2:4] + h * h / 2 * both
         matrix[2:4] += h / 2 * (both + both @ matrix)
         return matrix
+    if order == LEAPFROG:
+        half, drift = np.eye(5), np.eye(5)
+        half[2:4] += h / 2 * np.array([kicks["vx"][1], kicks["vy"][1]])
+        drift[:2] += h * np.eye(5)[2:4]
+        return np.asarray(half @ drift @ half)
     for statement in order.removesuffix(" factor").replace("xy", "x y").split():
         row, rates = kicks[statement]
         one = np.eye(5)
@@ -72,15 +78,6 @@ def step_matrix(order: str, theta: Array, h: float) -> Array:
     if "factor" in order:
         matrix[2:4] *= 1 - drag * h
     return matrix
-
-
-def power(matrix: Array, exponent: float) -> Array:
-    """Return a power of a matrix, which need not be whole."""
-    if exponent == round(exponent):
-        return np.asarray(np.linalg.matrix_power(matrix, round(exponent)))
-    values, vectors = np.linalg.eig(matrix)
-    turned = vectors * values.astype(complex) ** exponent
-    return np.asarray(np.linalg.solve(vectors.T, turned.T).T.real)
 
 
 @dataclass(frozen=True)
@@ -95,7 +92,7 @@ class LinearSteps(SphericalPendulum):
     """
 
     method: str = ""
-    every: float = 1
+    every: int = 1
     spacing: float = 0.0
     near: tuple[float, ...] = ()
     kind: str = "linear"
@@ -104,9 +101,9 @@ class LinearSteps(SphericalPendulum):
         """Return x and y in m, shape (times, 2)."""
         at = np.round(times / self.spacing).astype(int)
         matrix = step_matrix(self.method, theta, self.spacing / self.every)
-        if not (np.isfinite(matrix).all() and self.every < MOST_STEPS):
+        if not np.isfinite(matrix).all():
             return np.full((len(times), 2), np.nan)
-        matrix = power(matrix, self.every)
+        matrix = np.linalg.matrix_power(matrix, self.every)
         states = np.array([[theta[7], theta[8], theta[9], theta[10], 1.0]])
         while len(states) <= at[-1]:  # twice as many rows every time
             states = np.concatenate([states, states @ matrix.T])
@@ -140,59 +137,69 @@ def likely_loops(case: FileCase) -> list[LinearSteps]:
         return []
     slows = abs(fitted[0].drag) * float(rows.times[-1]) > NEAR
     for free in (FITTED, PUSHED):
-        for order in (*ORDERS, VERLET, *DAMPED) if slows else (*ORDERS, VERLET):
-            for phase in PHASES:
-                steps, size = _fitted(case, order, phase / frequency, fitted[0], free)
-                if size <= CLOSE * case.resolution and _is_whole(steps.every):
-                    return [_whole(steps)]
+        fits = [
+            _best_number(case, order, fitted[0], free)
+            for order in (*ORDERS, VERLET, LEAPFROG, *(DAMPED if slows else ()))
+        ]
+        exact = [fit for fit in fits if fit[1] <= NEEDED * case.resolution]
+        if exact:
+            return [steps for steps, _ in sorted(exact, key=lambda fit: fit[1])]
     return []
 
 
-def _is_whole(every: float) -> bool:
-    return math.isfinite(every) and round(every) > 0 and abs(every - round(every)) < WHOLE
-
-
-def _whole(steps: LinearSteps) -> LinearSteps:
-    return LinearSteps(**(vars(steps) | {"every": max(1, round(steps.every))}))
+def _best_number(
+    case: FileCase, order: str, phasors: Phasors, free: tuple[int, ...]
+) -> tuple[LinearSteps, float]:
+    """Return the steps of an order of statements, as many from row to row as leave least, and what they leave in m."""
+    fits: dict[int, tuple[LinearSteps, float]] = {}
+    low, high = 1, max(1, int(float(case.rows.times[1]) * case.frequency / FINEST))
+    while True:
+        tried = np.unique(np.geomspace(low, high, TRIED).round().astype(int)).tolist()
+        for every in tried:
+            if every not in fits:
+                fits[every] = _fitted(case, order, every, phasors, free)
+        best = min(fits, key=lambda every: fits[every][1])
+        known = sorted(fits)
+        place = known.index(best)
+        low, high = known[max(place - 1, 0)], known[min(place + 1, len(known) - 1)]
+        if fits[best][1] <= NEEDED * case.resolution or (
+            high - low < len(known) and all(every in fits for every in range(low, high + 1))
+        ):
+            return fits[best]
 
 
 def _fitted(
-    case: FileCase, order: str, step: float, phasors: Phasors, free: tuple[int, ...]
+    case: FileCase, order: str, every: int, phasors: Phasors, free: tuple[int, ...]
 ) -> tuple[LinearSteps, float]:
-    """Return the steps of an order of statements that make the rows, and what they leave in m.
+    """Return some steps with the numbers of theta that make the rows, and what they leave in m.
 
     Args:
         case: the rows.
         order: of the statements.
-        step: a first value, in s.
+        every: number of steps from row to row.
         phasors: that make the rows nearly.
-        free: numbers of theta that are fitted beside the step.
+        free: numbers of theta that are fitted.
     """
-    rows, scales = case.rows, case.scales
-    spacing = float(rows.times[1])
+    rows, scales = case.rows, case.scales[[*free]]
     theta = case.right.changed(kind="linear").theta()
     theta[2] = phasors.beta
     theta[5] = -phasors.square.real
     theta[6] = phasors.drag
-    numbers = np.append(theta[[*free]] / scales[[*free]], math.log(step))
+    steps = LinearSteps(
+        **vars(case.pendulum), method=order, every=every, spacing=float(rows.times[1])
+    )
 
-    def steps_of(numbers: Array) -> LinearSteps:
+    def theta_with(numbers: Array) -> Array:
         moved = theta.copy()
-        moved[[*free]] = numbers[:-1] * scales[[*free]]
-        every = spacing * math.exp(-max(-LARGEST, min(numbers[-1], LARGEST)))
-        known = vars(case.pendulum)
-        return LinearSteps(**known, method=order, every=every, spacing=spacing, near=tuple(moved))
+        moved[[*free]] = numbers * scales
+        return moved
 
-    size = math.inf
-    for count in windows(rows.times, 4.0, LEAST, LEAST):
-        times, goal = rows.times[:count], rows.plane[:count].ravel()
+    def rows_with(numbers: Array) -> Array:
+        return steps.rows(theta_with(numbers), rows.times, 2).ravel()
 
-        def rows_of(numbers: Array, times: Array = times) -> Array:
-            steps = steps_of(numbers)
-            return steps.rows(np.array(steps.near), times, 2).ravel()
-
-        nudges = np.full(len(numbers), 1e-6)
-        model = by_differences(rows_of, goal, nudges)
-        numbers, left = gauss_newton(model, numbers, steps=NEWTON, gain=GAIN)
-        size = left / math.sqrt(count)
-    return steps_of(numbers), size
+    nudges = np.full(len(free), 1e-6)
+    model = by_differences(rows_with, rows.plane.ravel(), nudges)
+    start = theta[[*free]] / scales
+    numbers, left = gauss_newton(model, start, steps=NEWTON, gain=GAIN)
+    near = tuple(theta_with(numbers).tolist())
+    return replace(steps, near=near), left / math.sqrt(len(rows.times))

@@ -31,6 +31,7 @@ from .loops import LinearSteps, likely_loops
 from .phasors import METHODS
 from .programs import Program, SphericalPendulum
 from .readings import CauseReading
+from .thresholds import NEEDED
 
 TITLES = {method.id: method.title for method in METHODS}
 TITLES["heun"] = TITLES["rk2"]
@@ -189,6 +190,11 @@ def _of_steps(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
     effect = moved - steps.exact(theta, rows.times)
     residuals = rows.positions - moved
     if best is None or not largest(residuals) <= case.enough:
+        return None
+    # the steps of a linear model are exact: what they leave is rounding, or they are others; and numbers that nobody
+    # typed take up what others leave
+    most = 1.0 if best.untyped else NEEDED
+    if steps.kind == "linear" and not rms(residuals) <= most * case.resolution:
         return None
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
     explanation, _ = explanation_of(seen, [replace(best.reading, rest=rms(residuals)), *readings])
