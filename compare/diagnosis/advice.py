@@ -1,4 +1,7 @@
-"""What to do about each cause and each habit of a file, by their words; a word that ends in _ stands for several."""
+"""What to do about each cause and each habit of a file, by its word.
+
+A word that ends in _ stands for several.
+"""
 
 from __future__ import annotations
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from reference import FoucaultError, Scene
 from reference.engines.trajectory import Variants
-from reference.model.start import Start
-from reference.numbers.precision import DOUBLE, Array
+from reference.numbers.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import Deviation
@@ -73,8 +72,9 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         columns = {name: column[chosen] for name, column in columns.items()}
     try:
         with np.errstate(all="ignore"):
-            found = _explained(times, columns, scene, allowed_m)
-            return replace(found, next_step=_next_step(times, scene))
+            problem = KnownScene.of(scene)
+            found = _explained(times, columns, problem, allowed_m)
+            return replace(found, next_step=_next_step(times, problem.frequency))
     except (
         FoucaultError,
         ArithmeticError,
@@ -83,9 +83,8 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         return Explanation()
 
 
-def _next_step(times: Array, scene: Scene) -> str:
+def _next_step(times: Array, frequency: float) -> str:
     """Return what to do where no cause is known."""
-    frequency = Start.of(scene.exact, DOUBLE.prec).fastest_rate
     most_s = 2 * math.pi / frequency / ROWS_A_SWING if frequency else math.inf
     if len(times) > 1 and float(np.median(np.diff(times))) > most_s:
         return f"print at least {ROWS_A_SWING} rows a swing, one every {most_s:.2g} s, and score them again."
@@ -164,9 +163,9 @@ class KnownScene:
 
 
 def _explained(
-    times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float
+    times: Array, columns: dict[str, Array], problem: KnownScene, allowed_m: float
 ) -> Explanation:
-    problem = KnownScene.of(scene)
+    scene = problem.scene
     rows = problem.rows(times, columns)
     case = problem.case(rows, allowed_m)
     heights_left_out = any(part.id in LEFT_OUT for part in rows.conventions)

@@ -1,9 +1,10 @@
-# ruff: noqa: E501
 """What the diagnosis says of drawn files: python tests/bench/diagnosis.py CORPUS SEED COUNT [--out FILE].
 
 Each corpus draws files whose true causes are known, from a seed. A line of JSON is written for each, and a summary at
 the end: how many are identified, how many as "either … or …", how many get no cause, and every false claim.
 """
+
+# ruff: noqa: E501
 
 from __future__ import annotations
 

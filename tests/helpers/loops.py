@@ -1,5 +1,6 @@
-# ruff: noqa: E501
 """Loops as people write them: a linear pendulum in Python, JavaScript, C and Perl, with the order of their statements."""
+
+# ruff: noqa: E501
 
 from __future__ import annotations
 
