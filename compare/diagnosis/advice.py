@@ -1,4 +1,4 @@
-"""What to do about each cause and each habit of a file, by its word.
+"""The advice on each cause and each habit of a file, by its word.
 
 A word that ends in _ stands for several.
 """
