@@ -38,7 +38,7 @@ TITLES = {
     "ve": ("leapfrog", f"velocity Verlet, {EXPLICIT}"),
     "le": ("leapfrog", f"leapfrog, {EXPLICIT}"),
 }
-FINEST = 2e-4  # ωh: the shortest step that is tried
+FINEST = 1e-4  # ωh: the shortest step that is tried
 TRIED = 10  # numbers of steps that are tried at a time
 NEWTON = 8  # steps of a fit
 GAIN = 0.9  # of what was left: a step that leaves more ends a fit
