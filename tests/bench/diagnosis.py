@@ -30,6 +30,7 @@ ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests/helpers")]
 
 import wild_programs  # noqa: E402
+from adaptive import drawn_loose  # noqa: E402
 from loops import LANGUAGES, drawn_loop  # noqa: E402
 from mistakes import case, one_word_for_one_motion, told  # noqa: E402
 
@@ -192,6 +193,15 @@ def loops(draw: random.Random, count: int) -> Iterator[Specimen]:
             )
 
 
+def loose(draw: random.Random, count: int) -> Iterator[Specimen]:
+    """Yield what programs print that leave their steps to a solver at a loose tolerance."""
+    for number in range(count):
+        made = drawn_loose(draw)
+        yield Specimen(
+            f"{number}-{made.name}", made.scene, made.times, made.rows(), None, made.true, made.true
+        )
+
+
 def generated(
     program: Path, seed: int, numbers: range, most: int = 3
 ) -> Iterator[tuple[str, Any, Any]]:
@@ -273,13 +283,13 @@ def record(
     )
     lines = [] if explanation is None else list(explanation.lines())
     return {"id": name, "true": sorted(true), "said": sorted(words), "either": either, "wrong": sorted(wrong), "grade": grade,
-            "text": lines, "cpu_s": round(spent, 3)}  # fmt: skip
+            "named": len(required & said), "covered": len(required & covered), "of": len(required), "text": lines, "cpu_s": round(spent, 3)}  # fmt: skip
 
 
 def records(corpus: str, seed: int, count: int) -> Iterator[dict[str, Any]]:
     """Yield what is said of the files of a corpus."""
     draw = random.Random(f"{corpus}-{seed}")
-    simple = {"clocks": clocks, "columns": columns, "loops": loops}
+    simple = {"clocks": clocks, "columns": columns, "loops": loops, "loose": loose}
     if corpus in simple:
         for one in simple[corpus](draw, count):
             yield record(
@@ -360,7 +370,7 @@ def main() -> None:
     """Draw a corpus, and write what is said."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "corpus", choices=("generated", "right", "smooth", "clocks", "columns", "loops", "wild")
+        "corpus", choices=("generated", "right", "smooth", "clocks", "columns", "loops", "loose", "wild")
     )
     parser.add_argument("seed", type=int)
     parser.add_argument("count", type=int)
