@@ -84,6 +84,15 @@ SAME_MOTIONS: tuple[tuple[frozenset[str], frozenset[str]], ...] = tuple(
     for before, after in ((one, other), (other, one))
 )
 
+# what a step error looks like: alone each may be its cause, and two at once are no other motion than a step error's
+LIKE_A_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag", "clock")
+LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
+
+
+def is_like_a_drift(word: str) -> bool:
+    """Return whether a cause is the motion of a step error, or one."""
+    return word in LIKE_A_DRIFT or word.startswith("integrator")
+
 
 @dataclass(frozen=True)
 class Cause:
@@ -180,6 +189,13 @@ def fitted_number(
 ) -> Cause:
     """Return the cause that a number of a program is another one."""
     return Cause(word, group, text, lambda program: program, cost, free, stage)
+
+
+# the error of an integrator that has no name: a phase and an amplitude that drift, two numbers of one cause
+DRIFT = (
+    fitted_number("integrator_loose", "integrator", LOOSE, "phase_gain", stage="integrator"),
+    fitted_number("integrator_loose", "integrator", "", "decay_rate", stage="integrator"),
+)
 
 
 def normal_gravities(latitude: float) -> tuple[float, ...]:

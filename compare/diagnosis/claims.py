@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,7 +19,8 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from .case import AS_IF, EITHER, HARMLESS, Explanation, FileCase, NamedModel, largest, rms
-from .causes import Cause, shortest_decimal
+from .causes import DRIFT, EFFECTIVE, LIKE_A_DRIFT, LOOSE, Cause, is_like_a_drift, shortest_decimal
+from .drift import drifting
 from .fitted import MODELS, adjusted_to, model_of, polished, sentences, sized
 from .readings import CauseReading
 from .thresholds import (
@@ -33,9 +35,9 @@ from .thresholds import (
     ROWS_A_NUMBER,
 )
 
-LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
-# numbers that a step's error looks like
-STEP_LIKE = ("site.gravity", "pendulum.length", "pendulum.drag")
+ONE_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag")  # beside which no clock is believed
+# a g that is the effective one, with the centrifugal force's change along the swing and without it
+EFFECTIVE_G, WITHOUT_CHANGE = "effective_gravity", "no_centrifugal"
 ONE_NUMBER = ("site.gravity", "pendulum.length")  # of a linear motion their quotient alone is known
 
 
@@ -66,7 +68,7 @@ def has_few_digits(value: float, doubt: float, most: int = MOST_DIGITS) -> bool:
     return digits <= most and 2 * doubt < CHANCE * unit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Hypothesis:
     """A combination of causes whose program was run.
 
@@ -113,14 +115,40 @@ class Hypothesis:
     @property
     def untyped(self) -> list[Cause]:
         """Those whose number nobody typed."""
-        return [cause for cause in self.numbers if not self._is_typed(cause)]
+        inputs = [cause for cause in self.numbers if cause not in DRIFT]
+        return [cause for cause in inputs if not self._is_typed(cause)]
+
+    @property
+    def untyped_inputs(self) -> list[Cause]:
+        """Those of them that are no step."""
+        return [cause for cause in self.untyped if cause.stage != "integrator"]
+
+    @property
+    def drifts(self) -> bool:
+        """Whether an integrator's error is among its causes that has no name."""
+        return DRIFT[0] in self.reading.causes
+
+    @cached_property
+    def undrifted(self) -> Hypothesis:
+        """The hypothesis without that error, nothing fitted again."""
+        reading = self.reading.reader.without(self.reading, DRIFT)
+        return Hypothesis.of(self.case, reading)
+
+    @property
+    def names_no_step(self) -> bool:
+        """Whether two of its numbers that nobody typed, or a step and one of them, are a drift by other names."""
+        alike = [cause for cause in self.untyped if cause.id in LIKE_A_DRIFT]
+        steps = [cause for cause in self.numbers if cause.stage == "integrator"]
+        return not self.drifts and len(alike) + len(steps) > 1
 
     @property
     def price(self) -> int:
         """One for each change, named model, or number of few digits; two for any other number, and for a factor."""
         model = self.reading.program.kind != "sphere"
         inputs = [cause for cause in self.numbers if cause.stage != "integrator"]
-        dear = sum(not self._is_typed(cause, factors=False) for cause in inputs)
+        dear = sum(
+            cause in DRIFT or not self._is_typed(cause, factors=False) for cause in self.numbers
+        )
         # another sign is a change of its own
         dear += sum(
             self.reading.value(cause) * float(getattr(self.case.right, cause.free)) < 0
@@ -142,10 +170,12 @@ class Hypothesis:
         doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
         if cause.stage == "integrator":
             return self._divides(value, doubt)
+        scene = float(getattr(self.case.right, cause.free))
         widest = doubt * max(1.0, self.case.allowed_m / self.rest)
-        if any(has_few_digits(value, within) for within in (doubt, widest)):
-            return True
-        scene = self.case.right.rate
+        for within in (doubt, widest):
+            # what may be the scene's own number is no number that somebody typed
+            if abs(value - scene) > within and has_few_digits(value, within):
+                return True
         factor = factors and cause.free == "rate"
         return factor and has_few_digits(value / scene, doubt / abs(scene), FACTOR_DIGITS)
 
@@ -172,13 +202,40 @@ class Hypothesis:
 
     def without(self, word: str) -> Hypothesis:
         """Return the hypothesis without a cause, or without its model, everything else fitted again."""
+        return self.refitted(self.left_out(word).reading)
+
+    def left_out(self, word: str) -> Hypothesis:
+        """Return the hypothesis without a cause, or without its model, its numbers as they are."""
         reading = self.reading
         kind = reading.program.kind
         causes = [cause for cause in reading.causes if cause.id == word]
         fewer = reading.reader.without(reading, causes)
         if not causes:  # the word is that of the model
             kind = "sphere"
-        return self.refitted(replace(fewer, program=fewer.program.changed(kind=kind)))
+        fewer = replace(fewer, program=fewer.program.changed(kind=kind))
+        return Hypothesis.of(self.case, fewer)
+
+    def takes_from(self, other: Hypothesis) -> bool:
+        """Return whether a drift takes so much less beside its causes than beside another's that it is no accident."""
+        if not (self.drifts and other.drifts and self.rest <= RIVAL * other.rest):
+            return False
+        return CATALOGUE * self.undrifted.rest < CHANCE * other.undrifted.rest
+
+    def need_of(self, word: str) -> float:
+        """Return how many times as much is left without a cause, everything else fitted again."""
+        without = self.without(word)
+        if self.takes_from(without):
+            return without.undrifted.rest / self.undrifted.rest
+        return without.rest / self.rest
+
+    def is_worth_saying(self, word: str) -> bool:
+        """Return whether without a cause more than the tolerance is left, or a drift would take its place.
+
+        Numbers that somebody typed are not fitted again.
+        """
+        fitted_again = bool(self.untyped) or self.drifts
+        without = self.without(word) if fitted_again else self.left_out(word)
+        return without.largest_m > self.case.allowed_m or self.takes_from(without)
 
     def is_no_accident(self) -> bool:
         """Return whether hardly any of all known causes would explain the rows as well in place of one of its own.
@@ -227,7 +284,8 @@ def simplest(hypotheses: Sequence[Hypothesis]) -> Hypothesis:
     best, *dearer = sorted(enough, key=lambda one: (one.price, len(one.numbers), one.rest))
     for one in dearer:
         less = RIVAL if one.price == best.price else NEEDED
-        if less * one.rest <= best.rest and not (one.untyped and best.is_no_accident()):
+        better = less * one.rest <= best.rest or one.takes_from(best)
+        if better and not (one.untyped and best.is_no_accident()):
             best = one
     return best
 
@@ -235,22 +293,21 @@ def simplest(hypotheses: Sequence[Hypothesis]) -> Hypothesis:
 def without_needless(best: Hypothesis) -> Hypothesis:
     """Return a hypothesis without the causes without which about as little is left."""
     while best.words:
-        fewer = [best.without(word) for word in sorted(best.words)]
-        shorter = min(fewer, key=lambda one: one.rest)
-        if shorter.rest >= RIVAL * best.rest:
+        needs = {word: best.need_of(word) for word in sorted(best.words)}
+        word = min(needs, key=lambda word: needs[word])
+        if needs[word] >= RIVAL:
             break
-        best = shorter
+        best = best.without(word)
     return best
 
 
 def worth_saying(best: Hypothesis) -> tuple[Hypothesis, dict[str, float]]:
     """Return a hypothesis without what is within the tolerance, and how many times as much is left without the rest."""
     while best.words:
-        fewer = {word: best.without(word) for word in sorted(best.words)}
-        word = min(fewer, key=lambda word: fewer[word].largest_m)
-        if fewer[word].largest_m > best.case.allowed_m:
-            return best, {word: without.rest / best.rest for word, without in fewer.items()}
-        best = fewer[word]
+        slight = [word for word in sorted(best.words) if not best.is_worth_saying(word)]
+        if not slight:
+            return best, {word: best.need_of(word) for word in best.words}
+        best = min(map(best.without, slight), key=lambda one: one.largest_m)
     return best, {}
 
 
@@ -261,10 +318,13 @@ def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypoth
     """
     found: dict[frozenset[str], Hypothesis] = {}
     for hypothesis in hypotheses:
-        typed = best.untyped and not hypothesis.untyped and explains(best.case, hypothesis.left)
+        typed = (
+            best.untyped_inputs and not hypothesis.untyped and explains(best.case, hypothesis.left)
+        )
         near = typed or hypothesis.rest <= RIVAL * best.rest
         other = not hypothesis.words >= best.words and not hypothesis.words < best.words
         same = any(best.has_number(hypothesis, cause) for cause in hypothesis.numbers)
+        near = near and not best.takes_from(hypothesis)
         if near and other and not same and hypothesis.price <= best.price:
             found.setdefault(hypothesis.words, hypothesis)
     # few digits beat many
@@ -287,38 +347,70 @@ def told(
         reported: the same without what is within the tolerance.
         needs: how many times as much is left without each of its causes, by word.
     """
-    explained = explains(best.case, best.left) or not best.untyped
+    case = best.case
+    explained = explains(case, best.left) or not best.untyped
     sound = best.predicts() and best.enough_rows()
-    # where not even free numbers explain the rows, no other cause may be about as good by accident
-    needed = NEEDED if explained else CATALOGUE / CHANCE
-    common = best.words.intersection(*(rival.words for rival in rivals))
+    needed = _needed(best)
+    words = {one: _shared_words(one, [best, *rivals]) for one in (best, *rivals)}
+    common = frozenset.intersection(*words.values())
     untyped = {cause.id for cause in best.untyped}
     every = untyped.union(*({cause.id for cause in rival.untyped} for rival in rivals))
-    doubtful = (best.words - common) | untyped
-    by_step = False
-    if every & {*STEP_LIKE} and doubtful <= {*STEP_LIKE, "clock"}:
-        # what a step of no name does as well
+    # what a step of no name does as well
+    by_step = bool(every & {*ONE_DRIFT}) and all(map(is_like_a_drift, words[best] - common | untyped))
+    if by_step:
         common -= untyped
-        by_step = True
-    alternatives = [_said(best, best.words - common)]
-    alternatives += [_said(rival, rival.words - common) for rival in rivals]
-    alternatives += [("integrator_loose", LOOSE)] * by_step
+    alternatives = [_said(one, words[one] - common) for one in (best, *rivals)]
+    if by_step:
+        steps = [ids for ids, _ in alternatives if ids.startswith("integrator") and "+" not in ids]
+        alternatives = [one for one in alternatives if one[0] not in steps]
+        alternatives.append(("integrator_loose", LOOSE))
+    spacing = float(np.ptp(case.rows.times[:2]))
     differing = []
-    for cause in sized(best.case, reported.reading):
-        # a clock is no input: any factor will do, but not beside other numbers that take up what it leaves
-        number = cause.id in untyped and cause.stage != "integrator"
-        if cause.stage == "clock":
-            number = bool(untyped - {cause.id})
+    for cause in sized(case, reported.reading):
+        enough = sound and needs.get(cause.id, 0.0) >= needed
+        if cause.id == WITHOUT_CHANGE and cause.id not in words[best]:
+            cause = replace(cause, id=EFFECTIVE_G, text=EFFECTIVE)
         if cause.id not in common:
             differing.append(cause)
         elif cause.stage == "integrator" and not (cause.id not in untyped and best.is_exact):
-            yield loose(cause.size_m, "integrator" if sound and not untyped else AS_IF)
-        elif sound and needs.get(cause.id, 0.0) >= needed and not number:
-            yield _in_whole_steps(cause, float(np.ptp(best.case.rows.times[:2])))
+            needed_step = sound and needs.get(cause.id, 0.0) >= NEEDED
+            certain = needed_step and not best.untyped_inputs
+            yield loose(cause.size_m, "integrator" if certain else AS_IF)
+        elif enough and _is_an_input(cause, untyped):
+            yield _in_whole_steps(cause, spacing)
         else:
             yield hedged(cause)
     if differing:
         yield from _either(differing, _different(alternatives), sound and explained)
+
+
+def _shared_words(hypothesis: Hypothesis, every: Sequence[Hypothesis]) -> frozenset[str]:
+    """Return the words of a hypothesis; of a g that is effective in all, and more in some, that it is effective."""
+    effective = {WITHOUT_CHANGE, EFFECTIVE_G}
+    spoken = [one.words & effective for one in every]
+    if all(spoken) and len(set(spoken)) > 1:
+        return hypothesis.words - effective | {EFFECTIVE_G}
+    return hypothesis.words
+
+
+def _needed(best: Hypothesis) -> float:
+    """Return how many times as much has to be left without a cause that is certain."""
+    if explains(best.case, best.left):
+        return NEEDED
+    if best.untyped:
+        # where not even free numbers explain the rows, no other cause may be about as good by accident
+        return CATALOGUE / CHANCE
+    return NEEDED**2 if best.drifts else NEEDED
+
+
+def _is_an_input(cause: Deviation, untyped: set[str]) -> bool:
+    """Return whether the number of a cause, if it has one, is one that somebody typed.
+
+    A clock is no input: any factor will do, but not beside other numbers that take up what it leaves.
+    """
+    if cause.stage == "clock":
+        return untyped <= {cause.id}
+    return cause.id not in untyped or cause.stage == "integrator"
 
 
 def _in_whole_steps(cause: Deviation, spacing: float) -> Deviation:
@@ -335,12 +427,11 @@ def _in_whole_steps(cause: Deviation, spacing: float) -> Deviation:
 
 def _said(hypothesis: Hypothesis, words: frozenset[str]) -> tuple[str, str]:
     """Return some causes of a hypothesis as one alternative: their ids, and what is said of them."""
-    chosen = [
-        (word, text)
-        for word, text in sentences(hypothesis.case, hypothesis.reading)
-        if word in words
-    ]
-    return "+".join(word for word, _ in chosen), " and ".join(text for _, text in chosen)
+    chosen = dict(sentences(hypothesis.case, hypothesis.reading))
+    if EFFECTIVE_G in words and EFFECTIVE_G not in chosen:
+        chosen[EFFECTIVE_G] = EFFECTIVE
+    said = [word for word in chosen if word in words]
+    return "+".join(said), " and ".join(chosen[word] for word in said)
 
 
 def _different(alternatives: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -401,19 +492,29 @@ def explanation_of(
         readings: combinations of causes whose programs were run.
         step: that was taken from the rows before they were read, or None.
     """
-    hypotheses = [Hypothesis.of(case, reading) for reading in readings]
-    hypotheses = [one for one in hypotheses if harmless(case, one.left) and one.rest < math.inf]
+    hypotheses = _harmless(case, readings)
     if not hypotheses:
         return nothing(case), None
     best = without_needless(simplest(hypotheses))
+    likeliest = best
+    if step is None and (best.untyped or not explains(case, best.left)):
+        hypotheses += _harmless(case, drifting(case, readings))
+        hypotheses = [one for one in hypotheses if not one.names_no_step] or hypotheses
+        best = without_needless(simplest(hypotheses))
     reported, needs = worth_saying(best)
     enough = explains(case, reported.left) or NEEDED**2 * rms(reported.left) <= case.error
     if not enough or not harmless(case, reported.left):
-        return nothing(case), best
+        return nothing(case), likeliest
     causes = [*told(best, rivals_of(best, hypotheses), reported, needs), *filter(None, [step])]
     left_m = largest(reported.left)
     explanation = case.explanation(tuple(causes), left_m, rms(reported.left), reported.price)
-    return replace(explanation, model=_model(case, reported, causes)), best
+    return replace(explanation, model=_model(case, reported, causes)), likeliest
+
+
+def _harmless(case: FileCase, readings: Sequence[CauseReading]) -> list[Hypothesis]:
+    """Return readings as hypotheses, without those that leave a column worse than the file has it."""
+    hypotheses = [Hypothesis.of(case, reading) for reading in readings]
+    return [one for one in hypotheses if harmless(case, one.left) and one.rest < math.inf]
 
 
 def _model(case: FileCase, best: Hypothesis, causes: Sequence[Deviation]) -> NamedModel | None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from ..candidates.candidate import Deviation
 from .case import FileCase, NamedModel, largest, rms
-from .causes import SAME_MOTIONS, Cause, causes_of
+from .causes import DRIFT, LOOSE, SAME_MOTIONS, Cause, causes_of
 from .families import FamilyFit, fits_of
 from .programs import Program
 from .readings import CauseReading, Reader, adjusted
@@ -188,15 +188,15 @@ def sentences(case: FileCase, reading: CauseReading) -> Iterator[tuple[str, str]
         if cause.free:
             uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
             text = cause.sentence(reading.value(cause), uncertainty, case.right)
-        yield cause.id, text
+        if text:  # which a second number of one cause does not have
+            yield cause.id, text
 
 
 def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
     kind = reading.reader.right.kind
-    changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (
-        kind != "sphere"
-    )
+    changes = [(cause.stage, cause) for cause in reading.causes if cause not in DRIFT]
+    changes += [("model", None)] * (kind != "sphere")
     program, before = case.right, case.truth
     for stage, cause in sorted(changes, key=lambda change: ORDER.index(change[0])):
         value = shift = uncertainty = None
@@ -218,6 +218,9 @@ def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
             size = largest(case.positions(reading.program) - case.positions(without))
         yield Deviation(word, text, size, stage, value, shift, uncertainty)
         before = after
+    if DRIFT[0] in reading.causes:
+        size = largest(case.positions(reading.program) - before)
+        yield Deviation(DRIFT[0].id, LOOSE, size, "integrator")
 
 
 def model_of(

@@ -41,6 +41,8 @@ SMALLEST = {
     "drag": 1e-5,
     "late": 1.0,
     "altitude": 100.0,
+    "decay_rate": 1e-3,
+    "phase_gain": 1e-3,
 }
 
 
