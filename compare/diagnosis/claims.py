@@ -35,7 +35,11 @@ from .thresholds import (
     ROWS_A_NUMBER,
 )
 
-ONE_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag")  # beside which no clock is believed
+ONE_DRIFT = (
+    "site.gravity",
+    "pendulum.length",
+    "pendulum.drag",
+)  # beside which no clock is believed
 # a g that is the effective one, with the centrifugal force's change along the swing and without it
 EFFECTIVE_G, WITHOUT_CHANGE = "effective_gravity", "no_centrifugal"
 ONE_NUMBER = ("site.gravity", "pendulum.length")  # of a linear motion their quotient alone is known
@@ -169,7 +173,10 @@ class Hypothesis:
         value = self.reading.value(cause)
         doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
         if cause.stage == "integrator":
-            return self._divides(value, doubt)
+            # on the sphere what a step does is known roughly, and so is the step
+            return self.reading.program.kind != "sphere" and self._divides(value, doubt)
+        if cause.id in LIKE_A_DRIFT and self._steps_roughly:
+            return False
         scene = float(getattr(self.case.right, cause.free))
         widest = doubt * max(1.0, self.case.allowed_m / self.rest)
         for within in (doubt, widest):
@@ -178,6 +185,12 @@ class Hypothesis:
                 return True
         factor = factors and cause.free == "rate"
         return factor and has_few_digits(value / scene, doubt / abs(scene), FACTOR_DIGITS)
+
+    @property
+    def _steps_roughly(self) -> bool:
+        """Return whether a step of its own leaves more than rounding, and so moves numbers that are like a drift."""
+        stepped = any(cause.stage == "integrator" for cause in self.reading.causes)
+        return stepped and self.rest > NEEDED * self.case.resolution
 
     def _divides(self, step: float, doubt: float) -> bool:
         """Return whether a step may go into the spacing of the rows a whole number of times."""
@@ -356,7 +369,9 @@ def told(
     untyped = {cause.id for cause in best.untyped}
     every = untyped.union(*({cause.id for cause in rival.untyped} for rival in rivals))
     # what a step of no name does as well
-    by_step = bool(every & {*ONE_DRIFT}) and all(map(is_like_a_drift, words[best] - common | untyped))
+    by_step = bool(every & {*ONE_DRIFT}) and all(
+        map(is_like_a_drift, words[best] - common | untyped)
+    )
     if by_step:
         common -= untyped
     alternatives = [_said(one, words[one] - common) for one in (best, *rivals)]
@@ -366,7 +381,8 @@ def told(
         alternatives.append(("integrator_loose", LOOSE))
     spacing = float(np.ptp(case.rows.times[:2]))
     differing = []
-    for cause in sized(case, reported.reading):
+    for sized_cause in sized(case, reported.reading):
+        cause = sized_cause
         enough = sound and needs.get(cause.id, 0.0) >= needed
         if cause.id == WITHOUT_CHANGE and cause.id not in words[best]:
             cause = replace(cause, id=EFFECTIVE_G, text=EFFECTIVE)

@@ -54,7 +54,9 @@ def _with_drift(reading: CauseReading) -> CauseReading | None:
 
 def _without_drift(reading: CauseReading) -> CauseReading:
     """Return a reading without the causes that are the same motion as a drift."""
-    return reading.reader.without(reading, [cause for cause in reading.causes if is_like_a_drift(cause.id)])
+    return reading.reader.without(
+        reading, [cause for cause in reading.causes if is_like_a_drift(cause.id)]
+    )
 
 
 def _blind(reader: Reader) -> FamilyFit:

@@ -35,6 +35,7 @@ from .conventions import (
     unit_of_time,
 )
 from .fitted import readings_of
+from .formulas import of_formula
 from .observed import of_observation
 from .programs import Program, SphericalPendulum
 from .slips import falls, growth, slip
@@ -233,7 +234,8 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
         return nothing(case)
     named, best = explanation_of(case, readings_of(case))
     if best is None or not named.causes:
-        return of_steps(case, None) or _of_approximation(case, scene, None) or named
+        other = of_steps(case, None) or of_formula(case) or _of_approximation(case, scene, None)
+        return other or named
     program = best.reading.program
     # on the sphere what a step does is known roughly; to know it better, the step is taken
     # and in a linear model it is known exactly, if it is a method that has a name

@@ -194,9 +194,12 @@ def sentences(case: FileCase, reading: CauseReading) -> Iterator[tuple[str, str]
 
 def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
-    kind = reading.reader.right.kind
-    changes = [(cause.stage, cause) for cause in reading.causes if cause not in DRIFT]
-    changes += [("model", None)] * (kind != "sphere")
+    kind = reading.program.kind
+    changes: list[tuple[str, Cause | None]] = [
+        (cause.stage, cause) for cause in reading.causes if cause not in DRIFT
+    ]
+    if kind != "sphere":
+        changes.append(("model", None))
     program, before = case.right, case.truth
     for stage, cause in sorted(changes, key=lambda change: ORDER.index(change[0])):
         value = shift = uncertainty = None

@@ -243,6 +243,7 @@ def record(
     ]
     same = {ONE.get(word, word) for word in true}
     said = {ONE.get(word, word) for word in words}
+    said = {"site.gravity" if word.startswith("gravity_") else word for word in said}
     if wrong_of is None:
         wrong = (
             said
@@ -260,6 +261,7 @@ def record(
     }
     loose = {w for w in needed if w.startswith("integrator")}
     covered = said | {ONE.get(w, w) for each in either for w in each}
+    covered |= {"site.gravity"} if any("gravity_" in w for each in either for w in each) else set()
     if wrong_of is not None:
         covered = one_word_for_one_motion(covered)
         said = one_word_for_one_motion(said)
@@ -370,7 +372,8 @@ def main() -> None:
     """Draw a corpus, and write what is said."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "corpus", choices=("generated", "right", "smooth", "clocks", "columns", "loops", "loose", "wild")
+        "corpus",
+        choices=("generated", "right", "smooth", "clocks", "columns", "loops", "loose", "wild"),
     )
     parser.add_argument("seed", type=int)
     parser.add_argument("count", type=int)

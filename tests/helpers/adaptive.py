@@ -127,7 +127,10 @@ def _linear(made: Loose) -> None:
 
 
 MISTAKES: dict[str, tuple[Change, ...]] = {
-    "gravity": (_linear, _linear, _mistake("no_centrifugal", gravity="none"), _mistake("effective_gravity", gravity="effective")),
+    "gravity": (
+        _linear, _linear, _mistake("no_centrifugal", gravity="none"),
+        _mistake("effective_gravity", gravity="effective"),
+    ),
     "rate": (_mistake("solar_day", rate=2 * math.pi / 86400), _mistake("rounded_rate", rate=7.29e-5)),
     "coriolis": (_mistake("coriolis_half", coriolis=0.5), _mistake("coriolis_sign", coriolis=-1.0), _hemisphere),
     "release": (_mistake("inertial_rest", stars=1.0),),
@@ -148,8 +151,8 @@ def drawn_loose(draw: random.Random) -> Loose:
     out = float(f"{period / draw.choice((3.1, 8, 15, 30)):.2g}")
     rows = draw.randrange(250, 700)
     scene = load_scene("paris", [
-        f"pendulum.length={length}", f"site.latitude={latitude}", f"site.gravity={g}", f"release.x={x}", f"release.y={y}",
-        f"run.t_end={out * rows!r}", "run.transits=false", "inputs=binary64",
+        f"pendulum.length={length}", f"site.latitude={latitude}", f"site.gravity={g}", f"release.x={x}",
+        f"release.y={y}", f"run.t_end={out * rows!r}", "run.transits=false", "inputs=binary64",
     ])  # fmt: skip
     times = out * np.arange(rows)
     made = Loose(
