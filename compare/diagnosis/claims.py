@@ -42,6 +42,7 @@ ONE_DRIFT = (
 )  # beside which no clock is believed
 # a g that is the effective one, with the centrifugal force's change along the swing and without it
 EFFECTIVE_G, WITHOUT_CHANGE = "effective_gravity", "no_centrifugal"
+A_STEP = "integrator_loose", LOOSE
 ONE_NUMBER = ("site.gravity", "pendulum.length")  # of a linear motion their quotient alone is known
 
 
@@ -150,15 +151,19 @@ class Hypothesis:
         """One for each change, named model, or number of few digits; two for any other number, and for a factor."""
         model = self.reading.program.kind != "sphere"
         inputs = [cause for cause in self.numbers if cause.stage != "integrator"]
-        dear = sum(
-            cause in DRIFT or not self._is_typed(cause, factors=False) for cause in self.numbers
-        )
+        dear = sum(self._is_dear(cause) for cause in self.numbers)
         # another sign is a change of its own
         dear += sum(
             self.reading.value(cause) * float(getattr(self.case.right, cause.free)) < 0
             for cause in inputs
         )
         return len(self.reading.causes) + dear + model
+
+    def _is_dear(self, cause: Cause) -> bool:
+        """Return whether a number costs one more than a change; a step does not on the sphere, where it is rough."""
+        if cause.stage == "integrator" and self.reading.program.kind == "sphere":
+            return cause in DRIFT
+        return not self._is_typed(cause, factors=False)
 
     def _shown(self, cause: Cause) -> bool:
         """Return whether row 0 has the number itself: the place of the release."""
@@ -338,7 +343,9 @@ def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypoth
         other = not hypothesis.words >= best.words and not hypothesis.words < best.words
         same = any(best.has_number(hypothesis, cause) for cause in hypothesis.numbers)
         near = near and not best.takes_from(hypothesis)
-        if near and other and not same and hypothesis.price <= best.price:
+        # what is the same motion as a step error is a rival of it at any price
+        alike = all(map(is_like_a_drift, hypothesis.words ^ best.words))
+        if near and other and not same and (alike or hypothesis.price <= best.price):
             found.setdefault(hypothesis.words, hypothesis)
     # few digits beat many
     if any(rival.untyped for rival in found.values()) and best.is_no_accident():
@@ -375,10 +382,10 @@ def told(
     if by_step:
         common -= untyped
     alternatives = [_said(one, words[one] - common) for one in (best, *rivals)]
+    if not best.is_exact:
+        alternatives = [_without_name(*alternative) for alternative in alternatives]
     if by_step:
-        steps = [ids for ids, _ in alternatives if ids.startswith("integrator") and "+" not in ids]
-        alternatives = [one for one in alternatives if one[0] not in steps]
-        alternatives.append(("integrator_loose", LOOSE))
+        alternatives.append(A_STEP)
     spacing = float(np.ptp(case.rows.times[:2]))
     differing = []
     for sized_cause in sized(case, reported.reading):
@@ -396,8 +403,16 @@ def told(
             yield _in_whole_steps(cause, spacing)
         else:
             yield hedged(cause)
+    are_needed = all(needs.get(cause.id, math.inf) >= NEEDED for cause in differing)
     if differing:
-        yield from _either(differing, _different(alternatives), sound and explained)
+        certain = sound and explained and are_needed
+        yield from _either(differing, _different(alternatives), certain)
+
+
+def _without_name(ids: str, text: str) -> tuple[str, str]:
+    """Return an alternative; a step alone as one that has no name."""
+    alone = ids.startswith("integrator") and "+" not in ids
+    return A_STEP if alone else (ids, text)
 
 
 def _shared_words(hypothesis: Hypothesis, every: Sequence[Hypothesis]) -> frozenset[str]:
@@ -413,7 +428,7 @@ def _needed(best: Hypothesis) -> float:
     """Return how many times as much has to be left without a cause that is certain."""
     if explains(best.case, best.left):
         return NEEDED
-    if best.untyped:
+    if best.untyped_inputs:
         # where not even free numbers explain the rows, no other cause may be about as good by accident
         return CATALOGUE / CHANCE
     return NEEDED**2 if best.drifts else NEEDED
