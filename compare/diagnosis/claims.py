@@ -141,7 +141,12 @@ class Hypothesis:
 
     @property
     def names_no_step(self) -> bool:
-        """Whether two of its numbers that nobody typed, or a step and one of them, are a drift by other names."""
+        """Whether two of its numbers that nobody typed, or a step and one of them, are a drift by other names.
+
+        Two numbers of a right program leave rounding; what a solver does leaves more.
+        """
+        if self.rest <= NEEDED * self.case.resolution:
+            return False
         alike = [cause for cause in self.untyped if cause.id in LIKE_A_DRIFT]
         steps = [cause for cause in self.numbers if cause.stage == "integrator"]
         return not self.drifts and len(alike) + len(steps) > 1

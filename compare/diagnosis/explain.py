@@ -202,7 +202,9 @@ def _explained(
         best = first_good_explanation(problem.case(rows, allowed_m), scene)
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
     unknown = simple and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
-    if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
+    if not best.slip and (
+        unknown or any(cause.id.endswith("integrator_loose") for cause in best.causes)
+    ):
         wrong_term = slip(rows, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
             return Explanation(best.conventions, slip=wrong_term)
