@@ -145,7 +145,7 @@ class Hypothesis:
 
         Two numbers of a right program leave rounding; what a solver does leaves more.
         """
-        if self.rest <= NEEDED * self.case.resolution:
+        if self.is_exact:
             return False
         alike = [cause for cause in self.untyped if cause.id in LIKE_A_DRIFT]
         steps = [cause for cause in self.numbers if cause.stage == "integrator"]
@@ -166,8 +166,10 @@ class Hypothesis:
 
     def _is_dear(self, cause: Cause) -> bool:
         """Return whether a number costs one more than a change; a step does not on the sphere, where it is rough."""
+        if cause in DRIFT:
+            return True
         if cause.stage == "integrator" and self.reading.program.kind == "sphere":
-            return cause in DRIFT
+            return False
         return not self._is_typed(cause, factors=False)
 
     def _shown(self, cause: Cause) -> bool:

@@ -242,6 +242,8 @@ def record(
         [word for word in each for word in word.split("+")] for each in alternatives(explanation)
     ]
     same = {ONE.get(word, word) for word in true}
+    if wrong_of is not None:
+        same |= one_word_for_one_motion(true)
     said = {ONE.get(word, word) for word in words}
     said = {"site.gravity" if word.startswith("gravity_") else word for word in said}
     if wrong_of is None:
