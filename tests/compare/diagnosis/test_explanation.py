@@ -593,6 +593,25 @@ def test_a_slip_in_a_formula_is_found_in_the_accelerations(
     assert ("does work" in said) is (place != (0, 0))
 
 
+def test_a_slip_in_a_closed_formula_is_found_in_its_coefficients() -> None:
+    """Of a linear motion released at rest against the stars, x has a sine where its formula has a cosine."""
+    scene, times = load_scene("paris", ["inputs=binary64"]), 3.0 * np.arange(400.0)
+    day = 2 * np.pi / 86400
+    beta = day * np.sin(np.radians(float(scene.exact.latitude)))
+    omega = np.sqrt(float(scene.exact.gravity) / float(scene.exact.length) + beta**2)
+    cos, sin = np.cos(omega * times), np.sin(omega * times)
+    turned = np.exp(-1j * beta * times)
+    x, y = (
+        0.3 * cos * turned.real - 0.4 * sin * turned.imag,
+        0.3 * cos * turned.imag + 0.4 * cos * turned.real,
+    )
+    found = told(scene, times, {"x": x, "y": y}, 5e-7)
+    assert found.words == {"linear_g", "no_centrifugal", "solar_day", "inertial_rest"}
+    said = found.explanation.slip
+    assert said.startswith("It follows a closed formula with a slip: ")
+    assert "in the formula of x, sin ωt sin βt has 0.4 m where the model has 0 m" in said
+
+
 def test_rows_too_far_apart_for_their_own_motion_tell_no_slip() -> None:
     """Ten seconds from row to row, which the clock counts as a sixth of a second: a bob that turns back each time."""
     scene, seconds = load_scene("paris", ["inputs=binary64"]), 10.0 * np.arange(361)
