@@ -13,7 +13,8 @@ FINEST = 1e-3
 ROUNDED = 1.5
 
 # Times the residual: without a cause that is certain as much is left, everything else fitted again. Where the tolerance
-# is not reached, so many times as much, squared, has to be explained of the error for anything to be named.
+# is not reached, so many times as much, squared, has to be explained of the error for anything to be named, and to be
+# left without each typed cause beside a step error of no name.
 # tests/compare/diagnosis/test_claims.py: test_what_is_hardly_needed_is_not_certain
 NEEDED = 10.0
 
@@ -44,8 +45,9 @@ CHANCE = 0.01
 MOST_DIGITS = 7
 FACTOR_DIGITS = 4
 
-# Changes that a program may have, about: the number of accidents that may be mistaken for a cause.
-# tests/compare/diagnosis/test_wild.py: test_true_causes_are_named_and_none_is_wrong
+# Changes that a program may have, about: the number of accidents that may be mistaken for a cause. Over the chance above,
+# how many times as large a drift has to be without a cause for the cause to be no accident beside it.
+# tests/compare/diagnosis/test_drift.py; tests/compare/diagnosis/test_wild.py
 CATALOGUE = 80
 
 # Of the difference between two versions: causes that explain less of it are no change.
