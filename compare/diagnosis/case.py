@@ -11,22 +11,21 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
+from .advice import advice
 from .phasors import sinc
 from .programs import NAMES, Program, SphericalPendulum
+from .thresholds import FINEST, RIVAL, ROUNDED
 
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
-CONVENTION = 0.3  # decades that a convention has to explain
+CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
 # conventions that a model may go with
 HARMLESS = ("z_constant", "decimals", "digits", "single_precision")
 UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
 # stage of a number that no person typed: the motion is like that, the cause is not known
 AS_IF = "as_if"
+EITHER = "either"  # stage of several causes of which one is true: the file does not tell which
 BEGIN = "It seems that your program"
 EQUAL = 1.01  # ratio of two residuals that may be one: fits of the same motion end a little apart
-# times a column's own error: an explanation that leaves more of it is refuted by the file
-HARM = 3.0
-# of the tolerance: smaller residuals are rounding and steps of a program's own, or ours
-FINEST = 1e-2
 
 
 @dataclass(frozen=True)
@@ -115,6 +114,9 @@ class Explanation:
         explained: share of the root mean square error that is gone with them.
         score: decades, as in `readings`: of two explanations the lower one is the better.
         allowed_m: distance in m that counts as agreement.
+        next_step: what to do where no cause is certain.
+        price: of its conventions and causes.
+        rest_m: the root mean square in m that is left.
     """
 
     conventions: tuple[Deviation, ...] = ()
@@ -125,16 +127,20 @@ class Explanation:
     explained: float = 0.0
     score: float = 0.0
     allowed_m: float = math.inf
+    next_step: str = ""
+    price: int = 0
+    rest_m: float = math.inf
 
     @property
     def known(self) -> list[Deviation]:
-        """The causes but those that the motion is merely like."""
-        return [cause for cause in self.causes if cause.stage != AS_IF]
+        """The causes that are certain."""
+        return [cause for cause in self.causes if cause.stage not in (AS_IF, EITHER)]
 
     def lines(self) -> Iterator[str]:
-        """Yield what is known, line by line, for people."""
+        """Yield what is known, line by line, for people: what is so, and below it what to do."""
         for convention in self.conventions:
             yield f"Your file {convention.text}."
+            yield from _advised(convention)
         listed = self.model is not None or len(self.causes) > 1
         if self.model is not None:
             exact = f"As that model it is exact to {self.model.exact_to_m:.2g} m"
@@ -143,28 +149,43 @@ class Explanation:
             yield f"{BEGIN} (largest effect first)"
         for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
             yield f"{'-' if listed else BEGIN} {cause.text}: {cause.size_m:.3g} m"
+            yield from _advised(cause)
+        if any(cause.stage == AS_IF for cause in self.causes):
+            yield 'Of what it "moves like" another number, a clock, a step or another term may be the cause.'
         if self.slip:
             yield self.slip
+        yield from self._rest()
+        if self.next_step and not self.known:
+            yield f"Next: {self.next_step}"
+
+    def _rest(self) -> Iterator[str]:
+        """Yield what is left once all is put right, or that nothing is known."""
         # which the rounding of a file, say, may be by itself
         enough = self.corrected_m <= self.allowed_m
         mended = self.causes or any(
             enough or convention.id not in UNCORRECTED for convention in self.conventions
         )
-        if mended and math.isfinite(self.corrected_m):
-            these = "this" if len(self.causes or self.conventions) == 1 else "all this"
-            share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
-            # a smaller rest is rounding, and not the same on every processor
-            left = (
-                f"{self.corrected_m:.2g}"
-                if self.corrected_m > rounding
-                else f"less than {rounding:.1g}"
-            )
-            beyond = (
-                f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
-            )
-            yield f"With {these} put right, {left} m are left{beyond}."
-        elif not self.slip:
-            yield "No mistake known to foucault explains the error."
+        if not (mended and math.isfinite(self.corrected_m)):
+            if not self.slip:
+                yield "No mistake known to foucault explains the error."
+            return
+        these = "this" if len(self.causes or self.conventions) == 1 else "all this"
+        share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
+        # a smaller rest is rounding, and not the same on every processor
+        left = (
+            f"{self.corrected_m:.2g}"
+            if self.corrected_m > rounding
+            else f"less than {rounding:.1g}"
+        )
+        beyond = f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
+        yield f"With {these} put right, {left} m are left{beyond}."
+
+
+def _advised(part: Deviation) -> Iterator[str]:
+    """Yield what to do about a convention or a cause that is certain."""
+    text = "" if part.stage in (AS_IF, EITHER) else advice(part.id)
+    if text:
+        yield f"  → {text}"
 
 
 @dataclass(frozen=True)
@@ -207,7 +228,7 @@ class FileCase:
     @property
     def enough(self) -> float:
         """Largest error in m that may be left."""
-        return max(self.allowed_m, 1.5 * self.rows.noise)
+        return max(self.allowed_m, ROUNDED * self.rows.noise)
 
     @property
     def released(self) -> bool:
@@ -250,7 +271,7 @@ class FileCase:
         )
         return replace(self, rows=rows, truth=self.truth[:count])
 
-    def tested(self, causes: tuple[Deviation, ...], residuals: Array, price: float) -> Explanation:
+    def tested(self, causes: tuple[Deviation, ...], residuals: Array, price: int) -> Explanation:
         """Return the explanation that some causes make up; the one without causes where they spoil a column.
 
         A cause that leaves a column worse than the file has it is refuted by the file.
@@ -262,12 +283,12 @@ class FileCase:
         """
         errors = self.rows.positions - self.truth
         own = np.maximum(np.abs(errors).max(axis=0), self.resolution)
-        if causes and (np.abs(residuals).max(axis=0) > HARM * own).any():
-            return self.explanation((), largest(errors), self.error, 0.0)
+        if causes and (np.abs(residuals).max(axis=0) > RIVAL * own).any():
+            return self.explanation((), largest(errors), self.error, 0)
         return self.explanation(causes, largest(residuals), rms(residuals), price)
 
     def explanation(
-        self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: float
+        self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: int
     ) -> Explanation:
         """Return the explanation that some causes make up.
 
@@ -275,24 +296,29 @@ class FileCase:
             causes: as in `Explanation`.
             corrected_m: the largest error in m that they leave.
             rest: the root mean square in m that they leave.
-            price: decades that they have to explain, as conventions have.
+            price: of the causes; each convention costs one.
         """
         # what is within the tolerance speaks against no explanation
         left = rest if corrected_m > self.enough else 0.0
-        score = (
-            math.log10(max(left / self.allowed_m, 1e-2))
-            + CONVENTION * len(self.rows.conventions)
-            + price
-        )
+        size = math.log10(max(left / self.allowed_m, 1e-2))
+        score = size + CONVENTION * (len(self.rows.conventions) + price)
         explained = 1 - rest / self.error if self.error else 0.0
         return Explanation(
-            self.rows.conventions, causes, None, corrected_m, "", explained, score, self.allowed_m
+            conventions=self.rows.conventions,
+            causes=causes,
+            corrected_m=corrected_m,
+            explained=explained,
+            score=score,
+            allowed_m=self.allowed_m,
+            price=price,
+            rest_m=max(rest, self.resolution),
         )
 
     def pendulum_of(self, program: Program) -> tuple[SphericalPendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
         theta = program.theta()
-        theta[NAMES.index("gradient")] = program.gradient * program.pace**2
+        if program.kind == "sphere":
+            theta[NAMES.index("gradient")] = program.gradient * program.pace**2
         return replace(self.pendulum, square=program.gradient_square), theta
 
     def positions(self, program: Program) -> Array:

@@ -41,6 +41,7 @@ UNITS = {
 }  # fmt: skip
 EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal force (--set site.gravity_is=effective)"
 NO_CHANGE = "leaves out the centrifugal force's change along the swing"
+CLOCK = "has a clock that runs {value} times as fast as its motion: divide its times by that"
 FACTORS = (
     2.0,
     10.0,
@@ -56,6 +57,41 @@ FACTORS = (
     5000.0,
     10000.0,
 )
+
+
+# causes that are the same motion in principle, or nearly: where the first are read, the others are tried
+SAME_MOTIONS: tuple[tuple[frozenset[str], frozenset[str]], ...] = tuple(
+    (frozenset(before.split()), frozenset(after.split()))
+    for one, other in (
+        # a clock that is slow by k: g smaller by k², the rotation by k
+        ("clock", "site.gravity"),
+        ("clock", "pendulum.length"),
+        ("clock", "site.gravity site.rotation_rate"),
+        ("clock", "pendulum.length site.rotation_rate"),
+        ("site.gravity", "pendulum.length"),
+        # the turn of the plane is Ω sin φ, whatever makes it
+        ("site.latitude", "site.rotation_rate"),
+        ("site.latitude", "solar_day"),
+        ("hemisphere", "coriolis_sign"),
+        ("hemisphere", "turned_plane_sign"),
+        ("coriolis_sign", "turned_plane_sign"),
+        ("hemisphere inertial_rest", "turned_plane_sign"),
+        ("coriolis_sign inertial_rest", "turned_plane_sign"),
+        ("coriolis_sign inertial_rest", "hemisphere inertial_rest"),
+        # rows that are late show a bob that moves already
+        ("late", "release.vx release.vy"),
+    )
+    for before, after in ((one, other), (other, one))
+)
+
+# what a step error looks like: alone each may be its cause, and two at once are no other motion than a step error's
+LIKE_A_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag", "clock")
+LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
+
+
+def is_like_a_drift(word: str) -> bool:
+    """Return whether a cause is the motion of a step error, or one."""
+    return word in LIKE_A_DRIFT or word.startswith("integrator")
 
 
 @dataclass(frozen=True)
@@ -82,7 +118,10 @@ class Cause:
 
     def sentence(self, value: float, uncertainty: float, right: Program) -> str:
         """Return the text with a fitted number to the digits that are known, beside what a right program has."""
-        if self.free == "rate":
+        if self.free == "pace":
+            factor, _ = shortest_decimal(1 / value, uncertainty / value**2)
+            number = f"{factor:.{PRINTED_DIGITS}g}"
+        elif self.free == "rate":
             factor, _ = shortest_decimal(value / right.rate, uncertainty / abs(right.rate))
             number = f"{factor:.{PRINTED_DIGITS}g}"
         elif self.free == "step":
@@ -120,6 +159,7 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
     ):
         text = f"has a clock too {way} by one part in its {rows} rows (a linspace that counts its ends)"
         yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
+    yield fitted_number("clock", "clock", CLOCK, "pace", stage="clock")
     if not released:
         yield fitted_number("late", "clock", "writes its rows {value} late", "late", stage="clock")
     for method in METHODS:
@@ -149,6 +189,24 @@ def fitted_number(
 ) -> Cause:
     """Return the cause that a number of a program is another one."""
     return Cause(word, group, text, lambda program: program, cost, free, stage)
+
+
+# the error of an integrator that has no name: a phase and an amplitude that drift, two numbers of one cause
+DRIFT = (
+    fitted_number("integrator_loose", "integrator", LOOSE, "phase_gain", stage="integrator"),
+    fitted_number("integrator_loose", "integrator", "", "decay_rate", stage="integrator"),
+)
+
+
+def normal_gravities(latitude: float) -> tuple[float, ...]:
+    """Return the gravity of the ellipsoid at a latitude in degrees in m/s²: the series of 1980, GRS 80 and WGS 84."""
+    sine = math.sin(math.radians(latitude)) ** 2
+    double = math.sin(math.radians(2 * latitude)) ** 2
+    return (
+        9.780327 * (1 + 0.0053024 * sine - 0.0000058 * double),
+        9.7803267715 * (1 + 0.001931851353 * sine) / math.sqrt(1 - 0.00669438002290 * sine),
+        9.7803253359 * (1 + 0.00193185265241 * sine) / math.sqrt(1 - 0.00669437999013 * sine),
+    )
 
 
 def _gravity(right: Program) -> Iterator[Cause]:
@@ -207,6 +265,9 @@ def _gravity(right: Program) -> Iterator[Cause]:
     for g in COMMON_GRAVITY:
         if abs(g - right.g) > 1e-9:
             yield Cause(f"gravity_{g:g}", "g", f"computes with g = {g:g} m/s²", _set(g=g))
+    for g in normal_gravities(right.latitude) if right.radius else ():
+        text = f"computes with the normal gravity of its latitude, g = {g:.10g} m/s²"
+        yield Cause("gravity_normal", "g", text, _set(g=g))
 
 
 def _rotation(right: Program, kind: str) -> Iterator[Cause]:

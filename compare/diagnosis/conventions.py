@@ -126,7 +126,7 @@ def heights(rows: FileRows, length: float) -> FileRows:
         reach = np.sqrt(square + column * column)
         drift = float(np.ptp(reach))
         if float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere)):
-            return _flat(right.changed(Deviation("z_constant", FLAT)))
+            return _flat(rows.changed(Deviation("z_constant", FLAT)))
         if drift > max(20 * rows.noise, OFF * length):
             return _flat(
                 right.changed(Deviation("off_the_sphere", SPRING, drift), cord=float(reach.mean()))

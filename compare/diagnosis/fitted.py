@@ -1,4 +1,4 @@
-"""Compare the families of models that fit a file, run the readings of each, and name the causes of the best one."""
+"""Propose explanations: the readings of the families of models that fit a file, their programs run."""
 
 from __future__ import annotations
 
@@ -6,43 +6,25 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from ..candidates.candidate import Deviation
-from .case import AS_IF, EQUAL, HARMLESS, Explanation, FileCase, NamedModel, largest, rms
-from .causes import Cause, causes_of
+from .case import FileCase, NamedModel, largest, rms
+from .causes import DRIFT, LOOSE, SAME_MOTIONS, Cause, causes_of
 from .families import FamilyFit, fits_of
-from .gate import (
-    CLEAN,
-    Evidence,
-    divides,
-    hedged,
-    is_typed,
-    loose,
-    supported_causes,
-    without_doubtful_steps,
-)
-from .programs import NAMES, Program
+from .programs import Program
 from .readings import CauseReading, Reader, adjusted
+from .thresholds import RIVAL
 
-TRIED = 6  # readings of a family that are run
+TRIED = 8  # readings of a family that are run
+LIKELIEST = 3  # of which those that are the same motion are tried as well
 # decades by which a family's readings may be dearer than the best of another, before they are polished
 CLOSE = 0.5
 # decades above the best reading within which others are polished before they are compared
 NEAR = 1.0
-RIVAL = 3.0  # times what a reading leaves: another that leaves no more may be meant
 POLISHED = 3  # steps by which fitted numbers are moved
-# decades: readings that may as well be true, and are distinguished by what they leave below the tolerance
-TIE = 0.2
-EXACT = 3.0  # times what fit and rounding leave, for a reading that leaves no more than they do
 BETTER = 0.9  # of what was left, for a step that is taken
 # decades by which a simpler family has to be better
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}
-NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
-FITTED_SHARE = 0.01  # and if one of them is a fitted number
 ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
-# times the square of the swing: what the leading error of a step leaves of the whole one
-WIDE = 2.0
 MODELS = {
     "linear": (
         "linear_g",
@@ -63,19 +45,14 @@ TITLES = {
 }  # fmt: skip
 
 
-def best_of(case: FileCase, stepped: bool = False) -> CauseReading | None:
-    """Return the best reading of all families; None if it leaves too much for anything to be named.
+def readings_of(case: FileCase, stepped: bool = False) -> list[CauseReading]:
+    """Return the readings of all families that were run, the likeliest first; none if no family fits the rows.
 
     Args:
         case: the file.
-        stepped: whether what steps do was taken from its rows: then no integrator is among the causes, and of what is
-            left the steps decide.
+        stepped: whether what steps do was taken from its rows: then no integrator is among the causes.
     """
     fits = list(fits_of(case))
-    noise = 1.5 * case.rows.noise
-    least = min((fit.rest for fit in fits), default=math.inf)
-    if not stepped and least > max(NAMED_SHARE * case.error, noise):
-        return None
 
     def causes(kind: str) -> list[Cause]:
         return [
@@ -83,86 +60,42 @@ def best_of(case: FileCase, stepped: bool = False) -> CauseReading | None:
         ]
 
     run = ranked(case, readers_of(case, fits), causes)
-    finest = max(case.resolution, 1.2 * least)
-    if not stepped and run and _is_tied(case, run):
-        exact = ranked(case, readers_of(case, fits, finest), causes)
-        run = next(
-            (readings for readings in (exact, run) if readings[0].rest <= EXACT * finest), []
-        )
-    best = run[0] if run else None
-    if best is None or stepped:
-        return best
-    # a family fits any such rows: what leaves much of them says nothing
-    if case.rows.plane.size <= len(NAMES):
-        return best if best.rest <= case.enough else None
-    # 9.81, 9.80665 and so on
-    many_values = any(cause.free or cause.group == "g" for cause in best.causes)
-    share = FITTED_SHARE if many_values else NAMED_SHARE
-    return best if best.rest <= max(share * case.error, noise) else None
+    if not run:
+        return []
+    # below the tolerance a search does not look any further: if there is more to be found, it is told to
+    least = min(fit.rest for fit in fits)
+    finest = max(case.resolution, least)
+    if min(reading.rest for reading in run) > RIVAL * finest:
+        run += ranked(case, readers_of(case, fits, finest), causes)
+    catalogue = {kind: causes(kind) for kind in EXTRA}
+    run += [
+        reading
+        for one in run[:LIKELIEST]
+        for reading in same_motions(case, one, catalogue[one.program.kind])
+    ]
+    return run
+
+
+def same_motions(
+    case: FileCase, reading: CauseReading, catalogue: Sequence[Cause]
+) -> Iterator[CauseReading]:
+    """Yield readings with other causes in place of some, which are the same motion in principle, or nearly."""
+    words = {cause.id for cause in reading.causes}
+    for before, after in SAME_MOTIONS:
+        if not before <= words:
+            continue
+        dropped = [cause for cause in reading.causes if cause.id in before]
+        other: CauseReading | None = reading.reader.without(reading, dropped)
+        for cause in catalogue:
+            if other is not None and cause.id in after:
+                other = reading.reader.with_cause(other, cause)
+        if other is not None and after <= {cause.id for cause in other.causes}:
+            yield polished(case, other)
 
 
 def _price(reading: CauseReading) -> float:
     """Return the score of a reading in decades, with what a simpler family costs: less is better."""
     return reading.score + EXTRA[reading.reader.right.kind]
-
-
-def _is_tied(case: FileCase, run: Sequence[CauseReading]) -> bool:
-    """Return whether a reading of another motion, with nothing in common with the best one, is about as likely."""
-    best = run[0]
-    groups = {cause.group for cause in best.causes}
-    likely = [
-        reading for reading in run[1:] if reading.causes and _price(reading) < _price(best) + TIE
-    ]
-    rivals = [
-        reading for reading in likely if groups.isdisjoint(cause.group for cause in reading.causes)
-    ]
-    return any(not _is_same_motion(case, reading, best) for reading in rivals)
-
-
-def _is_same_motion(case: FileCase, reading: CauseReading, other: CauseReading) -> bool:
-    """Return whether two readings move alike, as no rotation and neither of its two forces do."""
-    return rms(case.positions(reading.program) - case.positions(other.program)) <= case.resolution
-
-
-def _first_of_equals(
-    case: FileCase, run: list[CauseReading], places: dict[int, int]
-) -> CauseReading:
-    """Return the best reading; of those that are as good, the surest, and then the first of the catalogue.
-
-    Args:
-        case: the file.
-        run: the readings, at least one.
-        places: of each cause in the catalogue, by its identity.
-    """
-    least = min(map(_price, run))
-    equals = [reading for reading in run if _price(reading) <= least + math.log10(EQUAL)]
-    kinds = list(EXTRA)
-
-    def order(reading: CauseReading) -> tuple[int, int, list[int]]:
-        in_catalogue = sorted(places[id(cause)] for cause in reading.causes)
-        return unsure_causes(case, reading), kinds.index(reading.reader.right.kind), in_catalogue
-
-    return min(equals, key=order)
-
-
-def unsure_causes(case: FileCase, reading: CauseReading) -> int:
-    """Return how many numbers of a reading nobody typed, and steps that do not clearly divide the spacing of rows."""
-    spacing = float(np.ptp(case.rows.times[:2]))
-    clean = clean_share(case, reading.reader.right.kind)
-    unsure = 0
-    for cause in reading.causes:
-        if not cause.free:
-            continue
-        value = reading.value(cause)
-        if cause.stage == "integrator":
-            unsure += not divides(value, spacing, clean)
-            continue
-        shift = value - float(getattr(case.right, cause.free))
-        uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
-        unsure += not is_typed(
-            Deviation(cause.id, cause.text, 0.0, cause.stage, value, shift, uncertainty)
-        )
-    return unsure
 
 
 def readers_of(
@@ -196,11 +129,9 @@ def ranked(
         tried: number of readings of a family that are run.
     """
     run: list[CauseReading] = []
-    places: dict[int, int] = {}
     numbers = case.rows.plane[int(case.released) :].size  # as many that are fitted make any rows
     for reader in sorted(readers, key=lambda reader: reader.fit.rest):
         causes = causes_of(reader.right.kind)
-        places |= {id(cause): len(places) + n for n, cause in enumerate(causes)}
         least = min(map(_price, run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
         likely = reader.readings(causes, most)
@@ -221,8 +152,7 @@ def ranked(
         return []
     near = min(map(_price, run)) + NEAR
     run = [polished(case, reading) if _price(reading) <= near else reading for reading in run]
-    best = _first_of_equals(case, run, places)
-    return [best, *sorted((reading for reading in run if reading is not best), key=_price)]
+    return sorted(run, key=_price)
 
 
 def polished(case: FileCase, reading: CauseReading) -> CauseReading:
@@ -242,107 +172,34 @@ def polished(case: FileCase, reading: CauseReading) -> CauseReading:
     return reading.reader.scored(reading.causes, program, size / math.sqrt(len(goal)))
 
 
-def explanation_of(
-    case: FileCase, reading: CauseReading, step: Deviation | None = None
-) -> Explanation:
-    """Return the explanation that the best reading of a case makes up, and a step that was taken from its rows."""
-    rows, reader = case.rows, reading.reader
-    kind, reading = reader.right.kind, _without_needless(case, reading)
-    left = case.left(reading.program)
-    corrected = largest(left)
-    spacing, enough = float(np.ptp(rows.times[:2])), max(case.allowed_m, 2 * rows.noise)
-    shown = ("release.x", "release.y") if rows.starts and rows.times[0] == 0 else ()
-    evidence = Evidence(
-        corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown
-    )
-    read = [*sized(case, reading), *([] if step is None else [step])]
-    causes = list(supported_causes(read, evidence))
-    program = _with(reading, causes)
-    if program != reading.program:  # a cause that is not reported is not put right
-        left = case.left(program)
-        corrected = largest(left)
-        causes = without_doubtful_steps(causes, corrected, enough)
-    if any(cause.stage == AS_IF for cause in causes) and _may_be_a_clock(case, program):
-        rates = {cause.id for cause in reading.causes if cause.group == "rate"}
-        causes = [hedged(cause) if cause.id in rates else cause for cause in causes]
-    more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
-    if more and reader.drifts(case, reading.program):
-        causes.append(loose(corrected))
-    model = None
-    simple = {cause.stage for cause in causes} <= {"gravity", "model"}
-    if (
-        simple
-        and corrected <= case.allowed_m
-        and all(convention.id in HARMLESS for convention in rows.conventions)
-    ):
-        model = _model_of(kind, case.right, causes, corrected, largest(rows.positions - case.truth))
-    price = sum(cause.cost for cause in reading.causes)
-    explanation = case.tested(tuple(causes), left, price)
-    return replace(explanation, model=model) if explanation.causes else explanation
+def adjusted_to(case: FileCase, program: Program, names: Sequence[str]) -> Program:
+    """Return a program with some of its numbers moved to where it leaves least of the rows of a case."""
+    goal = case.rows.positions
+    made, _ = adjusted(program, names, case.positions, goal, steps=POLISHED, gain=BETTER)
+    return made
 
 
-def _may_be_a_clock(case: FileCase, program: Program) -> bool:
-    """Return whether a clock of another pace explains the rows as well, with the scene's own g, length and rate.
-
-    A clock that runs fast by a factor k makes g look smaller by k² and the rotation slower by k.
-    """
-    right = case.right
-    pull = program.g / program.length
-    if not right.rate or pull * right.g <= 0 or program.rate == right.rate:
-        return False
-    pace = math.sqrt(pull * right.length / right.g)
-    clock = program.changed(
-        g=right.g, length=right.length, rate=right.rate, pace=pace * program.pace
-    )
-    return rms(case.left(clock)) <= RIVAL * max(rms(case.left(program)), case.floor)
-
-
-def clean_share(case: FileCase, kind: str) -> float:
-    """Return the share of what an integrator does that its leading error may leave."""
-    width = (
-        float(np.hypot(*case.rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
-    )
-    return max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
-
-
-def _with(reading: CauseReading, reported: Sequence[Deviation]) -> Program:
-    """Return the program that has, of the causes of a reading, those that are reported."""
-    words = {cause.id.removeprefix(f"{AS_IF}.") for cause in reported}
-    drift = (
-        {"site.gravity", "pendulum.length", "pendulum.drag"}
-        if "integrator_loose" in words
-        else set()
-    )
-    kept = [
-        cause
-        for cause in reading.causes
-        if cause.id in words | drift or cause.stage == "integrator"
-    ]
-    if len(kept) == len(reading.causes):
-        return reading.program
-    return reading.reader.without(
-        reading, [cause for cause in reading.causes if cause not in kept]
-    ).program
-
-
-def _without_needless(case: FileCase, reading: CauseReading) -> CauseReading:
-    """Return a reading without the causes without which what is left is within the tolerance as well."""
-    while reading.causes:
-        fewer = [reading.reader.without(reading, [cause]) for cause in reading.causes]
-        left = {largest(case.left(shorter.program)): shorter for shorter in fewer}
-        least = min(filter(math.isfinite, left), default=math.inf)
-        if least > case.allowed_m:
-            break
-        reading = replace(left[least], rest=rms(case.left(left[least].program)))
-    return reading
+def sentences(case: FileCase, reading: CauseReading) -> Iterator[tuple[str, str]]:
+    """Yield the id and the sentence of each cause of a reading, and of its model."""
+    if reading.program.kind != "sphere":
+        yield MODELS[reading.program.kind]
+    for cause in reading.causes:
+        text = cause.text
+        if cause.free:
+            uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
+            text = cause.sentence(reading.value(cause), uncertainty, case.right)
+        if text:  # which a second number of one cause does not have
+            yield cause.id, text
 
 
 def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
-    kind = reading.reader.right.kind
-    changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (
-        kind != "sphere"
-    )
+    kind = reading.program.kind
+    changes: list[tuple[str, Cause | None]] = [
+        (cause.stage, cause) for cause in reading.causes if cause not in DRIFT
+    ]
+    if kind != "sphere":
+        changes.append(("model", None))
     program, before = case.right, case.truth
     for stage, cause in sorted(changes, key=lambda change: ORDER.index(change[0])):
         value = shift = uncertainty = None
@@ -364,9 +221,12 @@ def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
             size = largest(case.positions(reading.program) - case.positions(without))
         yield Deviation(word, text, size, stage, value, shift, uncertainty)
         before = after
+    if DRIFT[0] in reading.causes:
+        size = largest(case.positions(reading.program) - before)
+        yield Deviation(DRIFT[0].id, LOOSE, size, "integrator")
 
 
-def _model_of(
+def model_of(
     kind: str, right: Program, causes: Sequence[Deviation], exact: float, costs: float
 ) -> NamedModel | None:
     """Return the model that causes make up; None if one of them is no simplification with a name."""

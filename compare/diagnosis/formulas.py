@@ -4,7 +4,8 @@ A program that solves no equation but prints a formula keeps its rates whatever 
 
     x, y = c1 cos ωt cos βt + c2 cos ωt sin βt + c3 sin ωt cos βt + c4 sin ωt sin βt + c5.
 
-ω and β are fitted to x and y together, the coefficients are linear. No truth is needed, nor rows that are close.
+ω and β are fitted to x and y together, the coefficients are linear. A few of them that are far from the model's are
+slips. They are put right in the rows, and what the rows then show of the program passes the tests of a claim.
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ from reference.numbers.precision import Array
 
 from ..observed.least_squares import gauss_newton, solved
 from .case import Explanation, FileCase, FileRows
-from .causes import NAMED, causes_of
-from .families import FamilyFit, windows
-from .fitted import sized
-from .programs import NAMES, Program
-from .readings import CauseReading, Reader
+from .claims import explanation_of
+from .families import windows
+from .fitted import readings_of
+from .programs import Program
+from .thresholds import NEEDED
 
 PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
 LEAST = 24  # rows, twice the numbers that are fitted
@@ -37,6 +38,32 @@ FLAT = 1e-12  # of the largest: products whose share in the rows is less are not
 MOST = 3  # coefficients that are off
 # of the amplitude: a coefficient that is off by less may be so by an integrator's step
 SLIGHT = 0.05
+RELEASES = (0.0, 1.0, -1.0, 2.0)  # velocities of the release over that of rest against the stars
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A coefficient that is not the model's.
+
+    Attributes:
+        column: 0 of x, 1 of y.
+        product: its number in `PRODUCTS`.
+        value: in m.
+        right: the model's, in m.
+    """
+
+    column: int
+    product: int
+    value: float
+    right: float
+
+    def sentence(self, size: float) -> str:
+        """Return what is said of it; numbers that are small beside a size are 0."""
+        value, right = (
+            number if abs(number) > SAME * size else 0.0 for number in (self.value, self.right)
+        )
+        where = f"in the formula of {'xy'[self.column]}, {PRODUCTS[self.product]}"
+        return f"{where} has {value:.6g} m where the model has {right:.6g} m"
 
 
 @dataclass(frozen=True)
@@ -58,90 +85,67 @@ class Formula:
     @property
     def mirrored(self) -> Formula:
         """The same formula with the other sign of β."""
-        return replace(
-            self,
-            beta=-self.beta,
-            coefficients=self.coefficients * np.array([[1], [-1], [1], [-1], [1]]),
-        )
+        signs = np.array([[1], [-1], [1], [-1], [1]])
+        return replace(self, beta=-self.beta, coefficients=self.coefficients * signs)
 
-    def fit(self, times: Array, right: Program) -> FamilyFit:
-        """Return its rates as a fit of theta: of that they give β and ω² alone."""
-        theta = right.theta()
-        turn, pull = NAMES.index("turn_z"), NAMES.index("pull_z")
-        # γ1 γ2 = β² - ω² is the pull of the model whose phasors have these rates
-        theta[turn], theta[pull] = self.beta, self.beta**2 - self.omega**2
-        by_omega, by_beta = _slopes(times, self.omega, self.beta, self.coefficients)
-        pulled = -by_omega / (2 * self.omega)
-        turned = by_beta + by_omega * self.beta / self.omega
-        slopes = np.column_stack([turned.ravel(), pulled.ravel()]) / math.sqrt(len(times))
-        return FamilyFit("linear", theta, self.rest, (turn, pull), slopes)
+    def slips(self, right: Program, released: float, same: float) -> list[Slip]:
+        """Return the coefficients that differ by more than `same` from those of a linear model.
 
-    def slips(self, program: Program, same: float) -> list[str]:
-        """Return what is said of each coefficient that differs by more than `same` from that of a linear model.
-
-        Nothing is said where one is off slightly: an integrator's step does that. The model's own are those of
-        e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt).
+        There are none where one is off slightly: an integrator's step does that. The model's own are those of
+        e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt), whose v0 has a multiple of rest against the stars, -iβ z0.
         """
-        theta = program.theta()
-        start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
+        start = complex(right.x, right.y)
+        speed = complex(right.vx, right.vy) - 1j * self.beta * released * start
         push = (speed + 1j * self.beta * start) / self.omega
-        model = [start, -1j * start, push, -1j * push, 0j]  # of x and y: real and imaginary part
-        size = float(np.abs(self.coefficients).max())
-
-        def number(value: float) -> str:
-            return f"{value:.6g}" if abs(value) > SAME * size else "0"
-
-        sentences = []
-        for i, name in enumerate("xy"):
-            for product, value, both in zip(PRODUCTS, self.coefficients[:, i], model, strict=True):
-                right = (both.real, both.imag)[i]
-                if abs(value - right) <= same:
-                    continue
-                if abs(value - right) < SLIGHT * size:
-                    return []
-                where = f"in the formula of {name}, {product} has {number(value)} m"
-                sentences.append(f"{where} where the model has {number(right)} m")
-        return sentences
+        model = np.array([start, -1j * start, push, -1j * push, 0j])
+        expected = np.column_stack([model.real, model.imag])
+        off = np.abs(self.coefficients - expected)
+        if ((off > same) & (off < SLIGHT * np.abs(self.coefficients).max())).any():
+            return []
+        places = np.argwhere(off > same).tolist()
+        return [
+            Slip(
+                column,
+                product,
+                float(self.coefficients[product, column]),
+                float(expected[product, column]),
+            )
+            for product, column in places
+        ]
 
 
 def of_formula(case: FileCase) -> Explanation | None:
     """Return what is known of rows that follow a closed formula with a slip; None if they do not, or with too many."""
     formula = fit_formula(case.rows, case.right)
-    if formula is None or formula.rest > case.floor:
+    if formula is None or formula.rest > NEEDED * case.resolution:
         return None
-    # rates that have to be fitted are those of equations with a slip, not of a formula
-    named = [
-        cause for cause in causes_of(case, "linear") if cause.group != "drag" and not cause.free
-    ]
-    rates = [cause for cause in named if cause.stage in ("gravity", "model", "input")]
-    releases = [cause for cause in named if cause.stage == "release"]
-    same = max(SAME * float(np.hypot(case.right.x, case.right.y)), 10 * case.rows.noise)
-    best: tuple[float, CauseReading, str] | None = None
+    size = float(np.hypot(case.right.x, case.right.y))
+    same = max(SAME * size, 10 * case.rows.noise)
+    explanations = []
     for turned in (formula, formula.mirrored):
-        fit = turned.fit(case.rows.times, case.right)
-        reader = Reader(replace(case.right, kind="linear"), fit, case.floor, fit.rest)
-        reading = reader.readings(rates)[0]
-        if reading.rest > 2 * case.floor:
-            continue
-        released = [
-            replace(reading, causes=(*reading.causes, cause), program=cause.change(reading.program))
-            for cause in releases
-        ]
-        for likely in (reading, *released):
-            slips = turned.slips(likely.program, same)
-            price = NAMED * len(slips) + sum(cause.cost for cause in likely.causes)
-            if 0 < len(slips) <= MOST and (best is None or price < best[0]):
-                best = (
-                    price,
-                    likely,
-                    f"It follows a closed formula with a slip: {'; '.join(slips)}.",
-                )
-    if best is None:
-        return None
-    price, reading, text = best
-    return replace(
-        case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price), slip=text
-    )
+        for released in RELEASES:
+            slips = turned.slips(case.right, released, same)
+            if not 0 < len(slips) <= MOST:
+                continue
+            explanation = _of_slips(case, turned, slips)
+            if explanation is not None:
+                text = "; ".join(slip.sentence(size) for slip in slips)
+                slipped = f"It follows a closed formula with a slip: {text}."
+                explanations.append((len(slips), replace(explanation, slip=slipped)))
+    return min(explanations, key=lambda pair: pair[0], default=(0, None))[1]
+
+
+def _of_slips(case: FileCase, formula: Formula, slips: list[Slip]) -> Explanation | None:
+    """Return what is known of rows whose slips are put right; None unless all of that is certain."""
+    basis = _basis(case.rows.times, formula.omega, formula.beta)
+    positions = case.rows.plane.copy()
+    for slip in slips:
+        positions[:, slip.column] += (slip.right - slip.value) * basis[:, slip.product]
+    rows = replace(case.rows, positions=positions, cord=None)
+    mended = replace(case, rows=rows, truth=case.truth[:, :2])
+    explanation, _ = explanation_of(mended, readings_of(mended, stepped=True))
+    certain = explanation.causes and len(explanation.known) == len(explanation.causes)
+    return explanation if certain and explanation.corrected_m <= case.enough else None
 
 
 def fit_formula(rows: FileRows, right: Program) -> Formula | None:

@@ -237,6 +237,11 @@ class FixedStepMethod:
     kick: bool | None = None
     late: bool = False
 
+    @property
+    def order(self) -> int:
+        """The power of the step that its error goes with."""
+        return len(self.coefficients) - 1 if self.coefficients else 2 if self.kick is None else 1
+
     def computed(self, phasors: Phasors, step: float) -> Phasors:
         """Return the phasors that the rows of a program with this method show; the same if it cannot be told."""
 

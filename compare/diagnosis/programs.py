@@ -50,6 +50,8 @@ class Program:
         pace: of its time over that of its clock.
         method: its integrator, with the `step` in s.
         nominal_rate: the scene's rotation rate, of which the gradient in theta is a part.
+        phase_gain: share by which its integrator makes the swing too fast.
+        decay_rate: rate in 1/s that its integrator adds to the drag; negative where the swing grows.
     """
 
     g: float
@@ -77,6 +79,8 @@ class Program:
     method: FixedStepMethod | None = None
     step: float = 0.0
     nominal_rate: float = 0.0
+    phase_gain: float = 0.0
+    decay_rate: float = 0.0
 
     @classmethod
     def of(cls, inputs: Inputs, start: Array) -> Program:
@@ -168,6 +172,8 @@ class Program:
             theta[PER_SECOND] *= self.pace
             theta[PER_SECOND_SQUARED] *= self.pace**2
             theta[NAMES.index("gradient")] *= self.pace**2
+        theta[PER_SECOND_SQUARED] *= (1 + self.phase_gain) ** 2
+        theta[NAMES.index("drag")] += self.decay_rate
         return theta
 
     def _computed(self, theta: Array) -> Phasors:

@@ -41,6 +41,8 @@ SMALLEST = {
     "drag": 1e-5,
     "late": 1.0,
     "altitude": 100.0,
+    "decay_rate": 1e-3,
+    "phase_gain": 1e-3,
 }
 
 
@@ -109,7 +111,7 @@ class Reader:
                     # whose first step depends on the program before it
                     if cause.stage != "integrator":
                         seen.add(key)
-                    extended = None if _clash(reading.causes, cause) else self._with(reading, cause)
+                    extended = self.with_cause(reading, cause)
                     if extended is not None:
                         longer.append(extended)
                         least = min(least, extended.score)
@@ -135,9 +137,7 @@ class Reader:
             same_group = [
                 other for other in causes if other.group == cause.group and other is not cause
             ]
-            exchanged = [
-                self._with(fewer, other) for other in same_group if not _clash(fewer.causes, other)
-            ]
+            exchanged = [self.with_cause(fewer, other) for other in same_group]
             readings += [fewer, *filter(None, exchanged)]
         best = readings[first_least([10**other.score for other in readings])]
         return best if best is reading else self._exchanged(best, causes)
@@ -166,7 +166,10 @@ class Reader:
                     return self._judged(together, program)
         return reading
 
-    def _with(self, reading: CauseReading, cause: Cause) -> CauseReading | None:
+    def with_cause(self, reading: CauseReading, cause: Cause) -> CauseReading | None:
+        """Return a reading with one more cause, its numbers fitted; None if no program can have it."""
+        if _clash(reading.causes, cause):
+            return None
         program = cause.change(reading.program)
         if not program.sensible:
             return None

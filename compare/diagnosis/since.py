@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .case import AS_IF
+from .thresholds import OF_A_CHANGE
 
 STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
 SAME = 1e-9  # relative difference of two inputs that count as one
@@ -62,10 +63,15 @@ class Since:
         return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in (*self.worse, *self.gains))}"
 
 
+def _is_doubtful(deviation: Document) -> bool:
+    """Return whether the motion is merely like that, or it is one of several."""
+    return str(deviation["id"]).startswith(AS_IF) or "|" in deviation["id"]
+
+
 def _known(document: Document) -> Iterator[Document]:
     """Yield the conventions and causes that are certain of a document's candidate, and its slip."""
     for deviation in (*document["conventions"], *document["causes"]):
-        if deviation["text"].startswith("your ") and not deviation["id"].startswith(AS_IF):
+        if deviation["text"].startswith("your ") and not _is_doubtful(deviation):
             yield deviation
     if document["slip"]:
         yield {
@@ -94,26 +100,30 @@ class Version:
 
 
 def explain_change(
-    old: Version, new: Version, most_m: float
+    old: Version, new: Version, apart_m: float, most_m: float
 ) -> tuple[tuple[str, ...], float | None]:
     """Return what came and what went, and what that leaves of both errors, in m; None where nothing is known.
 
     Args:
         old: the baseline.
         new: the candidate.
+        apart_m: the largest distance in m between both versions.
         most_m: how far in m a cause may move the bob that came or went.
     """
     texts = tuple(_changes(old, new, most_m))
     if not texts:
         return (), None
-    return texts, max(old.left_m, new.left_m) + _unexplained_m(old.document, new.document)
+    left_m = max(old.left_m, new.left_m) + _unexplained_m(old.document, new.document)
+    # a step of no name is known by what its error looks like, and leaves it
+    if left_m > OF_A_CHANGE * apart_m and not any(text.startswith("the step") for text in texts):
+        return (), None
+    return texts, left_m
 
 
 def _unexplained_m(then: Document, now: Document) -> float:
     """Return how far in m numbers that only one of two documents has may move the bob, their cause not known."""
     here, there = (
-        [cause for cause in document["causes"] if cause["id"].startswith(AS_IF)]
-        for document in (then, now)
+        [cause for cause in document["causes"] if _is_doubtful(cause)] for document in (then, now)
     )
     pairs = [(cause, there) for cause in here] + [(cause, here) for cause in there]
     return float(

@@ -24,12 +24,14 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .causes import FITTED
+from .claims import explanation_of
 from .families import fit_pendulum
-from .fitted import best_of, explanation_of
+from .fitted import readings_of
+from .loops import LinearSteps, likely_loops
 from .phasors import METHODS
 from .programs import Program, SphericalPendulum
 from .readings import CauseReading
+from .thresholds import NEEDED
 
 TITLES = {method.id: method.title for method in METHODS}
 TITLES["heun"] = TITLES["rk2"]
@@ -76,6 +78,16 @@ class Steps(SphericalPendulum):
     every: int = 1
     spacing: float = 0.0
     near: tuple[float, ...] = ()
+    kind: str = "sphere"
+
+    @property
+    def title(self) -> tuple[str, str]:
+        """Its word, and what people call it."""
+        return "rk2" if self.method == "heun" else self.method, TITLES[self.method]
+
+    def exact(self, theta: Array, times: Array) -> Array:
+        """Return x and y in m as an exact integration has them, shape (times, 2)."""
+        return super().rows(theta, times, 2)
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x and y in m, shape (times, 2)."""
@@ -131,6 +143,10 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
     hung = case.right.changed(length=case.rows.cord or case.right.length)
+    for loop in likely_loops(flat):
+        explanation = _of_steps(flat, loop)
+        if explanation is not None:
+            return explanation
     explanations = []
     for steps in likely_steps(
         replace(flat, right=hung), None if reading is None else reading.program
@@ -148,47 +164,51 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     return min(explanations, key=lambda explanation: explanation.score, default=None)
 
 
-def _of_steps(case: FileCase, steps: Steps) -> Explanation | None:
+def _of_steps(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
     """Return what is known of rows that some steps made; None if others did."""
-    rows, (pendulum, theta) = case.rows, case.pendulum_of(case.right)
+    rows = case.rows
     fit = fit_pendulum(case, steps, [np.array(steps.near)])
     if fit is None:
         return None
     theta, best = fit.theta, None
+    readings: list[CauseReading] = []
     moved = steps.rows(theta, rows.times, 2)
     for _ in range(READINGS):
-        effect, left = moved - pendulum.rows(theta, rows.times, 2), rms(rows.positions - moved)
+        effect, left = moved - steps.exact(theta, rows.times), rms(rows.positions - moved)
         if not left <= max(case.floor, STEP_LEFT * rms(effect)):
             return None
         if best is not None and left <= case.floor:
             break
         seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-        best = best_of(seen, stepped=True)
-        if best is None or best.reader.right.kind != "sphere":
+        readings = readings_of(seen, stepped=True)
+        _, best = explanation_of(seen, readings)
+        if best is None or best.reading.program.kind != steps.kind:
             return None
-        pendulum, theta = case.pendulum_of(best.program)
+        pendulum, theta = case.pendulum_of(best.reading.program)
         steps = replace(steps, **vars(pendulum))
         moved = steps.rows(theta, rows.times, 2)
-    effect = moved - pendulum.rows(theta, rows.times, 2)
+    effect = moved - steps.exact(theta, rows.times)
     residuals = rows.positions - moved
     if best is None or not largest(residuals) <= case.enough:
         return None
-    cause = step_cause(steps, effect)
+    # the steps of a linear model are exact: what they leave is rounding, or they are others; and numbers that nobody
+    # typed take up what others leave
+    most = 1.0 if best.untyped else NEEDED
+    if steps.kind == "linear" and not rms(residuals) <= most * case.resolution:
+        return None
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-    explanation, price = (
-        explanation_of(seen, best, cause),
-        sum(cause.cost for cause in best.causes) + FITTED,
-    )
-    tested = case.tested(explanation.causes, residuals, price)
+    explanation, _ = explanation_of(seen, [replace(best.reading, rest=rms(residuals)), *readings])
+    causes = (*explanation.causes, step_cause(steps, effect))
+    tested = case.tested(causes, residuals, len(causes))
     return tested if tested.causes else None
 
 
-def step_cause(steps: Steps, effect: Array) -> Deviation:
+def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:
     """Return the cause that a program takes some steps, which have an effect on its rows."""
     step = steps.spacing / steps.every
-    text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
-    word = f"integrator_{'rk2' if steps.method == 'heun' else steps.method}"
-    return Deviation(word, text, largest(effect), "integrator", step, step)
+    word, title = steps.title
+    text = f"integrates with {title} at a step of {step:.3g} s"
+    return Deviation(f"integrator_{word}", text, largest(effect), "integrator", step, step)
 
 
 def likely_steps(case: FileCase, near: Program | None) -> list[Steps]:

@@ -135,7 +135,7 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
         now = Version(_explained(new, allowed_m), after_m)
         then = Version(baseline if old is None else _explained(old, allowed_m), before_m)
         most_m = math.inf if old is None else _WOBBLE * apart_m
-        changes, left_m = explain_change(then, now, most_m)
+        changes, left_m = explain_change(then, now, apart_m, most_m)
     return Since(
         name=str(baseline["candidate"]),
         before_m=before_m,

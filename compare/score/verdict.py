@@ -191,6 +191,7 @@ def lines(score: Score) -> Iterator[str]:
     yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
     if score.since is not None:
         yield f"{score.since.text}."
+    yield from _lines_on_reasons(score)
     yield from _lines_on_coverage(score)
     yield from _lines_on_positions(score)
     yield from _lines_on_velocities(score)
@@ -202,7 +203,6 @@ def lines(score: Score) -> Iterator[str]:
     yield entry("inputs read as", score.scene.inputs, score.why_inputs)
     bound = f"within {score.errors.bound_m:.2g} m at these times"
     yield entry("reference", score.golden.level, bound)
-    yield from _lines_on_reasons(score)
     for convention in score.candidate.conventions:
         yield f"Reading: {convention.text}."
     for note in score.notes:

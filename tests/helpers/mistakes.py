@@ -112,11 +112,13 @@ class Told:
         words: ids of causes and conventions.
         explanation: as in its score; None if it agrees, or could not be judged.
         agrees: whether it does.
+        alternatives: words of which one or another is true: "either … or …".
     """
 
     words: set[str]
     explanation: Any
     agrees: bool
+    alternatives: set[str] = field(default_factory=set)
 
 
 def told(scene: Scene, times: np.ndarray, columns: dict[str, np.ndarray], allowed_m: float) -> Told:
@@ -131,9 +133,16 @@ def told(scene: Scene, times: np.ndarray, columns: dict[str, np.ndarray], allowe
         return Told({"clock_offset"}, None, False)
     found = score.explanation
     words = {part.id for part in (*found.known, *found.conventions)} if found else set()
+    alternatives = {
+        word
+        for part in (found.causes if found else ())
+        for ids in part.id.split("|")
+        for word in ids.split("+")
+        if "|" in part.id
+    }
     if any(part.id == "clock_start" for part in score.candidate.conventions):
         words.add("clock_offset")
-    return Told(words, found, score.agrees)
+    return Told(words, found, score.agrees, alternatives)
 
 
 def one_word_for_one_motion(words: set[str]) -> set[str]:

@@ -21,11 +21,11 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ..case import Explanation, FileCase, largest
-from ..causes import Cause, causes_of, fitted_number
+from ..causes import Cause, causes_of
 from ..explain import KnownScene
 from ..families import FamilyFit, fits_of
-from ..fitted import MODELS, clean_share, polished, ranked, readers_of, sized
-from ..gate import Evidence, supported_causes
+from ..fitted import MODELS, polished, ranked, readers_of, sized
+from ..phasors import FixedStepMethod
 from ..programs import Program
 from ..readings import CauseReading
 from ..stepped import LONGEST, Steps, step_cause
@@ -34,9 +34,9 @@ from ..stepped import LONGEST, Steps, step_cause
 RULE, TYPED, FACTOR = "", ", whatever it is given", ", in proportion to what it is given"
 # numbers that a scene, or {setting}, gives
 INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
-CLOCK = fitted_number(
-    "clock", "clock", "moves on by {value} s while its clock counts one", "pace", stage="clock"
-)
+# times the square of the swing: what the leading error of a step leaves of the whole one
+WIDE = 2.0
+WHOLE = 1e-3  # of a number of steps: how far it may be from a whole one
 TRIED = 30  # readings of a family that are run
 EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
 
@@ -65,7 +65,7 @@ class Trial:
         """The mistakes that a program of its scene may have, by family, id, and number among those of one id."""
         causes, seen = {}, defaultdict[tuple[str, str], Iterator[int]](count)
         for kind in ("sphere", *MODELS):
-            for cause in (*causes_of(self.case, kind), CLOCK):
+            for cause in causes_of(self.case, kind):
                 causes[kind, cause.id, next(seen[kind, cause.id])] = cause
         return causes
 
@@ -208,8 +208,10 @@ class JointCase(FileCase):
         for run, program in zip(self.runs, reading.program.programs, strict=True):
             made, allowed = run.case.positions(program), run.case.enough
             if program.method is not None:
+                # what the leading error of a step leaves of the whole one on the sphere
                 effect = largest(made - run.case.positions(replace(program, method=None, step=0.0)))
-                allowed += clean_share(run.case, program.kind) * effect
+                width = float(np.hypot(*run.case.rows.plane.T).max()) / run.case.right.length
+                allowed += WIDE * width**2 * effect if program.kind == "sphere" else 0.0
             most = max(most, largest(run.case.rows.positions - made) / allowed)
         return most
 
@@ -237,21 +239,35 @@ class JointCase(FileCase):
     def explanation_of(self, reading: CauseReading, *besides: Deviation) -> Explanation:
         """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
         assert isinstance(reading.program, Joint)
-        case, program = self.runs[0].case, reading.program.programs[0]
-        read, left_m, times = (
-            [*sized(case, reading), *besides],
-            largest(case.left(program)),
-            case.rows.times,
-        )
-        known, clean = tuple(cause.id for cause in read), clean_share(case, program.kind)
-        spacing = float(times[1] - times[0])
-        evidence = Evidence(
-            left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known
-        )
-        causes = tuple(supported_causes(read, evidence))
+        case = self.runs[0].case
+        left_m = largest(case.left(reading.program.programs[0]))
+        spacing = float(case.rows.times[1] - case.rows.times[0])
+        causes = [
+            _by_order(cause, spacing, reading.program.programs[0].method)
+            for cause in (*sized(case, reading), *besides)
+            if cause.size_m > case.enough
+        ]
         return Explanation(
-            causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m
+            causes=tuple(causes),
+            corrected_m=left_m,
+            score=reading.score,
+            allowed_m=case.allowed_m,
         )
+
+
+def _by_order(cause: Deviation, spacing: float, method: FixedStepMethod | None) -> Deviation:
+    """Return a cause; of a step that does not go into the spacing of the rows only the order that was measured."""
+    if cause.stage != "integrator" or not cause.value or method is None:
+        return cause
+    count = spacing / cause.value
+    if abs(count - round(count)) <= WHOLE * count:
+        return cause
+    way = next((way for way in (TYPED, FACTOR) if way and cause.text.endswith(way)), "")
+    less = f"half the step, a {2**method.order}th of the error"
+    text = (
+        f"has the error of a method of order {method.order} ({less}), such as {method.title}{way}"
+    )
+    return replace(cause, id=f"integrator_order_{method.order}", text=text)
 
 
 def _following(part: FollowedCause, varied: bool) -> Cause:

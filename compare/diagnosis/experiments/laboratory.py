@@ -13,9 +13,9 @@ from reference import FoucaultError, Scene
 from ...candidates.candidate import Candidate, Deviation
 from ...candidates.external import SETTING
 from ..case import UNCORRECTED, Explanation, largest
+from ..claims import loose
 from ..explain import RENAMED, KnownScene
 from ..fitted import readers_of
-from ..gate import loose
 from ..stepped import Steps, likely_steps
 from .findings import Experiment, Experiments, Finding
 from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
@@ -127,7 +127,7 @@ class Laboratory:
             if run.setting != 1 and len(run.case.rows.times) == len(first.case.rows.times):
                 changed = largest(run.case.rows.positions - first.case.rows.positions)
                 if changed > first.case.enough:
-                    return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
+                    return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0)]
         try:
             read = [(run.case, readers_of(run.case, list(run.fits.values()))) for run in self._runs]
         except UNSOLVED:
@@ -140,7 +140,7 @@ class Laboratory:
         ]
         drifting = {id(case) for case, reader in spheres if reader.drifts(case, reader.right)}
         error_m = _error_m(first)
-        explanation = first.case.explanation((loose(error_m),), error_m, 0.0, 0.0)
+        explanation = first.case.explanation((loose(error_m),), error_m, 0.0, 0)
         return [explanation] if len(drifting) == len(self._runs) > LEAST_RUNS else []
 
     def _make(self, experiment: Experiment) -> bool:

@@ -190,13 +190,12 @@ def test_a_tolerance_is_the_step(method: str, old: float, new: float, outcome: s
     if old == new:
         check(found, set(), outcome)
         return
-    assert found.changes and all(
-        STEP in one or "leaves the sphere" in one for one in found.changes
-    ), found.text
+    # a step of no name moves a bob as several numbers do: silence is right as well
+    assert all(STEP in one or "leaves the sphere" in one for one in found.changes), found.text
 
 
-def test_a_number_without_a_cause_is_no_part_of_what_changed_and_more_than_nothing_else() -> None:
-    """A fast clock moves like another g, which is not told for certain."""
+def test_a_clock_is_told_as_what_changed_and_no_g() -> None:
+    """A fast clock moves like another g, but for what the rotation does."""
     scene, times = (
         load_scene("paris", ["run.t_end=3600", "inputs=binary64"]),
         np.linspace(0, 3600, 121),
@@ -210,13 +209,8 @@ def test_a_number_without_a_cause_is_no_part_of_what_changed_and_more_than_nothi
 
     same = judge(version(1.0, "7.3e-5"), scene, baseline=version(1.0, "7.292115e-5")).since
     assert same is not None and same.complete and "7.3e-05" in same.text
-    for new, old in (("7.3e-5", 1.0001), ("0", 1.0)):
-        found = judge(
-            version(1.0 if old > 1 else 1.0001, new), scene, baseline=version(old, "7.292115e-5")
-        ).since
-        assert found is not None and found.changes and not found.complete, found.text
-        assert (
-            found.left_m is not None
-            and found.left_m > 0.06
-            and "that explains all but 0.0" in found.text
-        )
+    # where the rotation shows, a clock is no g
+    old = version(1.0001, "7.292115e-5")
+    found = judge(version(1.0, "7.3e-5"), scene, baseline=old).since
+    assert found is not None and found.complete and len(found.changes) == 2
+    assert any("clock" in change for change in found.changes)

@@ -842,7 +842,7 @@ def test_rounding_to_single_precision_is_all_that_is_said_of_it(golden):
 def test_metres_under_a_header_of_centimetres_are_told(golden):
     columns = {name: golden.grid[name] / (1 if name == "z" else 100) for name in ("x", "y", "z")}
     said = str(judge({"t": golden.t, **columns}, golden.scene))
-    assert "Your file counts metres as centimetres.\nWith this put right, " in said
+    assert "Your file counts metres as centimetres.\n" in said and "With this put right, " in said
     assert "|r| = l" not in said
 
 

@@ -1,0 +1,131 @@
+"""The advice on each cause and each habit of a file, by its word.
+
+A word that ends in _ stands for several.
+"""
+
+from __future__ import annotations
+
+import re
+
+FAMILIES = ("gravity_", "integrator_", "frame_")  # of whose words one line speaks
+DO = {
+    "no_centrifugal": "Add −Ω × (Ω × (R + r)), or judge against a scene whose g is the measured one.",
+    "effective_gravity": "If your g is the measured one, say `--set site.gravity_is=effective`; else add the force.",
+    "no_tilt": "Add the force's part along y: −Ω² R cos φ sin φ.",
+    "no_lift": "Add the force's part along z: Ω² R cos² φ.",
+    "tilt_no_sine": "Multiply the part along y by sin φ.",
+    "uniform_gravity": "Compute the force where the bob is and not at the suspension. The effect is small.",
+    "ellipsoid_gravity": "Leave the force at the suspension out: a measured g has it. Keep its change along the swing.",
+    "point_mass": "Keep g constant in size and direction, as the scene does.",
+    "sphere": "Take the distance to the axis from the ellipsoid ([physics](physics.md)).",
+    "mean_sphere": "Take the distance to the axis from the ellipsoid, not from a radius of 6371 km.",
+    "site.altitude": "Set the altitude of the scene, in metres.",
+    "gravity_": "Take the scene's g: `foucault show SCENE` prints it.",
+    "solar_day": "Divide 2π by the sidereal day, or take the scene's rotation rate.",
+    "rounded_rate": "Take all digits of the scene's rotation rate.",
+    "sidereal_day": "Take the scene's rotation rate and not 2π over a day.",
+    "rate_per_hour": "Divide the rate by 3600.",
+    "rate_in_degrees_per_hour": "Convert the rate to rad/s.",
+    "rate_in_degrees": "Multiply the rate by π/180.",
+    "rate_factor": "Remove the factor. It is often there to make the turn visible.",
+    "no_rotation": "Add the Coriolis and centrifugal forces.",
+    "site.rotation_rate": "Compare your rotation rate with the scene's.",
+    "coriolis_sign": "Turn the sign: the force is −2 Ω × v.",
+    "coriolis_half": "Multiply the Coriolis force by 2.",
+    "coriolis_double": "Halve the Coriolis force.",
+    "no_coriolis": "Add −2 Ω × v.",
+    "vertical_only": "Add the part of Ω to the north, Ω cos φ.",
+    "horizontal_sign": "Turn the sign of Ω cos φ: it points north.",
+    "vertical_sign": "Turn the sign of Ω sin φ: it points up on the northern hemisphere.",
+    "turned_plane": "Integrate the equations on the turning Earth; a turned plane leaves out the ellipse.",
+    "turned_plane_sign": "Turn the other way, or better: integrate the equations.",
+    "frame_": "Let x point east and y north, or turn the release and the output.",
+    "inertial_rest": "Release at rest in the turning axes: v = 0.",
+    "inertial_rest_sign": "Release at rest in the turning axes: v = 0.",
+    "release_at_twice": "Release at rest in the turning axes: v = 0.",
+    "hemisphere": "Turn the sign of the latitude: north is positive.",
+    "radians": "Convert the latitude to radians before its sine.",
+    "colatitude": "Use the latitude, or swap sine and cosine.",
+    "no_sine": "Multiply Ω by sin φ.",
+    "geocentric": "Use the geodetic latitude, the one on maps.",
+    "site.latitude": "Compare your latitude with the scene's.",
+    "at_rest": "Give the bob the scene's velocity at its release.",
+    "swapped": "Swap x and y of the release.",
+    "no_drag": "Add −drag · v to the acceleration.",
+    "drag_half": "Double the drag: the acceleration is −drag · v, without a half.",
+    "drag_double": "Halve the drag: the acceleration is −drag · v, without a two.",
+    "site.gravity": "Compare your g with the scene's.",
+    "pendulum.length": "Compare your length with the scene's.",
+    "pendulum.drag": "Compare your drag with the scene's, in 1/s.",
+    "release.x": "Compare the x of your release with the scene's.",
+    "release.y": "Compare the y of your release with the scene's.",
+    "release.vx": "Compare the vx of your release with the scene's.",
+    "release.vy": "Compare the vy of your release with the scene's.",
+    "stretched_cord": "Put the bob back on the sphere after each step, or use equations that keep the length.",
+    "linspace_clock": "Give `linspace` one point more, or leave its end out.",
+    "clock": "Divide its times by that factor, and look for it in the clock: frames a second, or a day.",
+    "late": "Print the time before the step, or the state after it, not one of each.",
+    "integrator_": "Take a smaller step, or a method of higher order ([studies](studies.md)).",
+    "integrator_loose": "Take a smaller step or a tighter tolerance.",
+    "linear_g": "Integrate the full equations: a small-angle model leaves out that a wide swing is slower.",
+    "linear_in_angle": "Integrate the full equations: this model leaves out that a wide swing is slower.",
+}
+HABITS = {  # of a file: words, what is said of it, what to do
+    "decimals, digits": ("prints few digits", "Print 17 digits."),
+    "single_precision": ("holds numbers in single precision", "Compute and write in double."),
+    "z_down": ("counts z downwards", "Nothing: it is converted."),
+    "z_from_lowest": ("counts z from the lowest point", "Nothing: it is converted."),
+    "z_offset": (
+        "has z too high or too low by the same in every row",
+        "Count z from the suspension, upwards.",
+    ),
+    "vertical_is_not_z": ("calls the vertical x or y", "Nothing: it is converted."),
+    "z_constant": (
+        "gives z a constant: its bob does not rise as it swings",
+        "Write the height, or leave the column out.",
+    ),
+    "off_the_sphere": (
+        "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere",
+        "Put the bob back on the sphere after each step.",
+    ),
+    "unit_of_length": (
+        "is in another unit than metres or than its header says, or in cord lengths",
+        "Name the unit in the header, or say `--units`.",
+    ),
+    "unit_of_time": (
+        "counts time in another unit than seconds",
+        "Name the unit in the header, or say `--units`.",
+    ),
+    "angles": (
+        "gives x and y as angles of the cord",
+        "Write x and y in metres, or name the columns as angles.",
+    ),
+    "x_west, y_south, xy_reversed, xy_swapped, axes_turned": (
+        "has other horizontal axes",
+        "Let x point east and y north.",
+    ),
+    "column_copied, column_constant, column_mirrored, column_scaled, column_moved, column_late": (
+        "prints another column, a constant, or the column mirrored, scaled, moved or some rows late",
+        "Print the coordinate itself: x east, y north and z up, in metres from the suspension.",
+    ),
+    "plane_scaled, plane_turned, plane_moved": (
+        "prints x and y scaled, turned or moved",
+        "Print x east and y north, in metres from the vertical through the suspension.",
+    ),
+    "clock_offset": ("starts its clock late", "Let the clock be 0 at the release."),
+    "rows_reversed": ("has its rows in reverse order", "Write the rows in order of time."),
+    "rows_late, rows_early": (
+        "has its clock behind or ahead of its rows",
+        "Print time and state of the same moment.",
+    ),
+}
+
+
+def advice(word: str) -> str:
+    """Return what to do about a cause, or about a habit of a file; "" where there is nothing to do."""
+    family = next((family for family in FAMILIES if word.startswith(family)), word)
+    habits = {one: what for words, (_, what) in HABITS.items() for one in words.split(", ")}
+    text = DO.get(word) or DO.get(family) or habits.get(word, "")
+    text = "" if text.startswith("Nothing") else text
+    # on a terminal a link is the file that it leads to
+    return re.sub(r"\[\w+\]\((\S+?)\)", r"docs/\1", text)

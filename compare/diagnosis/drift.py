@@ -1,0 +1,72 @@
+"""The error of an integrator that has no name: typed causes are read beside a phase and an amplitude that drift.
+
+In a linear motion the steps of any method make the swing a little too fast or too slow, and let it decay or grow. What
+rows tell of a program beside such an error is what no drift of the phase and of the amplitude changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from .case import FileCase
+from .causes import DRIFT, causes_of, is_like_a_drift
+from .families import FamilyFit
+from .fitted import polished
+from .programs import NAMES
+from .readings import CauseReading, Reader
+
+TRIED = 8  # readings of a family that are run
+
+
+def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]:
+    """Return readings beside a drift of phase and amplitude, their numbers fitted.
+
+    Args:
+        case: the file.
+        near: readings without a drift; their typed causes are tried beside one.
+    """
+    typed = [_without_drift(reading) for reading in near]
+    readers = {reading.reader.right.kind: reading.reader for reading in reversed(near)}
+    for kind, reader in readers.items():
+        catalogue = [cause for cause in causes_of(case, kind) if not is_like_a_drift(cause.id)]
+        blind = replace(reader, fit=_blind(reader))
+        found = blind.readings(catalogue)[:TRIED]
+        typed += [replace(reading, reader=reader) for reading in found]
+    different: dict[tuple[str, frozenset[str]], CauseReading] = {}
+    for reading in typed:
+        texts = frozenset(cause.text for cause in reading.causes)
+        different.setdefault((reading.program.kind, texts), reading)
+    beside = [_with_drift(reading) for reading in different.values()]
+    return [polished(case, reading) for reading in beside if reading is not None]
+
+
+def _with_drift(reading: CauseReading) -> CauseReading | None:
+    """Return a reading beside a drift, fitted to what was fitted to the rows; None if it has too many numbers."""
+    found: CauseReading | None = reading
+    for cause in DRIFT:
+        if found is not None:
+            found = found.reader.with_cause(found, cause)
+    return found
+
+
+def _without_drift(reading: CauseReading) -> CauseReading:
+    """Return a reading without the causes that are the same motion as a drift."""
+    return reading.reader.without(
+        reading, [cause for cause in reading.causes if is_like_a_drift(cause.id)]
+    )
+
+
+def _blind(reader: Reader) -> FamilyFit:
+    """Return a fit to which programs are equally near that differ by a drift alone."""
+    fit = reader.fit
+    free = list(fit.free)
+    pull = np.zeros(len(free))
+    for name in ("pull_x", "pull_y", "pull_z"):
+        number = NAMES.index(name)
+        pull[free.index(number)] = fit.theta[number]
+    drift = np.column_stack([fit.slopes @ pull, fit.slopes[:, free.index(NAMES.index("drag"))]])
+    along, _ = np.linalg.qr(drift)
+    return replace(fit, slopes=fit.slopes - along @ (along.T @ fit.slopes))

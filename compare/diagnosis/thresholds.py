@@ -1,0 +1,55 @@
+"""The thresholds that decide what is said of a file, each with what it protects against and the test that moves it.
+
+Everything else that is a number in this package says how much is tried, or at what a computation stops: with another
+value of it an explanation may not be found, but none becomes certain.
+"""
+
+# Of the tolerance. Smaller residuals are rounding, and steps of a program's own or ours, which no sentence is told by.
+# tests/compare/diagnosis/test_same_words.py
+FINEST = 1e-3
+
+# Times the rounding of the file: the largest of many rounded numbers is off by as much as this.
+# tests/compare/diagnosis/test_claims.py: test_rounding_is_no_error
+ROUNDED = 1.5
+
+# Times the residual: without a cause that is certain as much is left, everything else fitted again. Where the tolerance
+# is not reached, so many times as much, squared, has to be explained of the error for anything to be named, and to be
+# left without each typed cause beside a step error of no name.
+# tests/compare/diagnosis/test_claims.py: test_what_is_hardly_needed_is_not_certain
+NEEDED = 10.0
+
+# Times a residual: what is no more than this is about as good. So are two explanations; one without a cause, which then
+# is not needed; the last rows, predicted from the first; and a column that an explanation leaves worse than it was.
+# tests/compare/diagnosis/test_claims.py: test_rivals_are_told_beside_each_other;
+# tests/compare/diagnosis/test_false_causes.py: test_no_cause_is_stated_that_spoils_a_right_column
+RIVAL = 3.0
+
+# Of the rows, from the first one: numbers that are fitted to them have to predict the others.
+# tests/compare/diagnosis/test_claims.py: test_what_does_not_predict_is_not_certain
+FIRST_PART = 2 / 3
+
+# Rows for each fitted number: of fewer rows nothing is certain.
+# tests/compare/diagnosis/test_claims.py: test_of_few_rows_nothing_fitted_is_certain
+ROWS_A_NUMBER = 4
+
+# Alternatives of an "either … or …"; where there are more, the motion is like one of them.
+# tests/compare/diagnosis/test_claims.py: test_rivals_are_told_beside_each_other
+ALTERNATIVES = 3
+
+# Chance that a number which nobody typed has as few digits, within its own uncertainty.
+# tests/compare/diagnosis/test_claims.py: test_few_digits
+CHANCE = 0.01
+
+# Digits of a number that people type, and of a factor.
+# tests/compare/diagnosis/test_claims.py: test_few_digits
+MOST_DIGITS = 7
+FACTOR_DIGITS = 4
+
+# Changes that a program may have, about: the number of accidents that may be mistaken for a cause. Over the chance above,
+# how many times as large a drift has to be without a cause for the cause to be no accident beside it.
+# tests/compare/diagnosis/test_drift.py; tests/compare/diagnosis/test_wild.py
+CATALOGUE = 80
+
+# Of the difference between two versions: causes that explain less of it are no change.
+# tests/compare/diagnosis/test_claims.py: test_a_change_explains_what_lies_between_the_versions
+OF_A_CHANGE = 0.1

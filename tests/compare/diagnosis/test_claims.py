@@ -1,0 +1,138 @@
+"""The tests of a claim, each by a file that fails it: what is certain, what is one of several, what is not said."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from mistakes import told
+
+from compare.diagnosis.claims import has_few_digits
+from reference import Scene, load_scene, trajectory
+
+TIMES = np.linspace(0, 600, 301)
+ALLOWED_M = 5e-7
+
+
+def paris(*settings: str) -> Scene:
+    return load_scene(
+        "paris", ["run.t_end=700", "run.transits=false", "inputs=binary64", *settings]
+    )
+
+
+def explained(positions: np.ndarray, times: np.ndarray = TIMES, scene: Scene | None = None) -> Any:
+    """Return what is told of x and y in m, shape (rows, 2)."""
+    columns = {"x": positions[:, 0].copy(), "y": positions[:, 1].copy()}
+    return told(scene or paris(), times, columns, ALLOWED_M)
+
+
+def rows(*settings: str, times: np.ndarray = TIMES) -> np.ndarray:
+    """Return x and y of a program with other inputs in m."""
+    return trajectory(paris(*settings), times)[:, :2]
+
+
+def stages(found: Any) -> dict[str, str]:
+    return {cause.id: cause.stage for cause in found.explanation.causes}
+
+
+@pytest.mark.parametrize(
+    ("value", "doubt", "few"),
+    [
+        (9.81, 1e-6, True),
+        (9.80665, 1e-9, True),
+        (9.804688964, 1e-9, False),  # ten digits
+        (9.8046889, 1e-7, False),  # an eighth digit, by chance at odds of one in five
+        (9.81, 1e-3, False),  # any number is as near to a decimal of three digits
+        (1e-9, 1e-8, True),  # zero
+    ],
+)
+def test_few_digits(value: float, doubt: float, few: bool) -> None:
+    assert has_few_digits(value, doubt) is few
+
+
+def test_rounding_is_no_error() -> None:
+    """Rows with six decimals, and a mistake that moves them by less than their rounding."""
+    found = explained(rows("site.latitude=48.84612").round(6))
+    assert found.agrees or stages(found) == {}
+
+
+def test_few_digits_are_certain_and_many_are_one_of_several() -> None:
+    assert stages(explained(rows("site.gravity=9.81"))) == {"gravity_9.81": "input"}
+    assert stages(explained(rows("site.gravity=9.8071"))) == {"site.gravity": "input"}
+    (either,) = explained(rows("site.gravity=9.80712345678")).explanation.causes
+    assert either.stage == "either" and {"site.gravity", "integrator_loose"} <= {
+        *either.id.split("|")
+    }
+    assert either.text.startswith("either takes site.gravity to be 9.807123")
+
+
+def test_rivals_are_told_beside_each_other() -> None:
+    """A plane of small swings, not of the sphere: Ω of the other sign, or of the other hemisphere."""
+    scene = paris("site.gravity_is=effective")
+    beta = 7.292115e-5 * math.sin(math.radians(48.846111))
+    swing = math.sqrt(9.80665 / 67 + beta * beta)
+    start = 0.3 + 0.4j
+    turned = np.cos(swing * TIMES) - 1j * beta / swing * np.sin(swing * TIMES)
+    plane = start * np.exp(1j * beta * TIMES) * turned
+    found = explained(np.column_stack([plane.real, plane.imag]), scene=scene)
+    (either,) = [cause for cause in found.explanation.causes if cause.stage == "either"]
+    assert {"coriolis_sign", "hemisphere"} <= {*either.id.split("|")}
+    assert len(either.id.split("|")) <= 3
+
+
+def test_what_does_not_predict_is_not_certain() -> None:
+    """A g for the first rows and another one, seven digits the same, for the last."""
+    first, last = rows("site.gravity=9.8071"), rows("site.gravity=9.80711")
+    mixed = np.where((TIMES < 400)[:, None], first, last)
+    assert explained(mixed).words == set()
+
+
+def test_of_few_rows_nothing_fitted_is_certain() -> None:
+    times = np.array([0.0, 2.0, 4.0])
+    found = explained(rows("site.gravity=9.8123", times=times), times)
+    assert "site.gravity" not in found.words
+
+
+def test_what_is_hardly_needed_is_not_certain() -> None:
+    """A latitude whose effect is a few times that of a smooth error of another origin."""
+    wave = 2e-6 * np.sin(0.05 * TIMES) * (TIMES / 600) ** 2
+    found = explained(rows("site.latitude=48.85") + np.column_stack([wave, -wave]))
+    assert "site.latitude" not in found.words
+
+
+def test_normal_gravity_is_recognised() -> None:
+    found = explained(rows("site.gravity=9.80967161366882"))
+    assert stages(found) == {"gravity_normal": "input"}
+
+
+def test_of_a_turn_alone_no_latitude_is_claimed() -> None:
+    """A day of 86400 s and a latitude of many digits: Ω sin φ is known, and neither of both."""
+    scene = paris("site.gravity_is=effective")
+    fields = ["site.gravity_is=effective", "site.rotation_rate=7.27220521664304e-5"]
+    found = explained(rows(*fields, "site.latitude=48.4861123456"), scene=scene)
+    assert "site.latitude" not in found.words
+
+
+def test_a_change_explains_what_lies_between_the_versions() -> None:
+    from compare.diagnosis import Version, explain_change
+
+    def version(size_m: float, left_m: float) -> Version:
+        cause = {
+            "id": "solar_day",
+            "text": "your program turns the Earth once in a day",
+            "size_m": size_m,
+        }
+        causes = [cause] if size_m else []
+        document = {
+            "conventions": [],
+            "causes": causes,
+            "slip": None,
+            "corrected": {"max_error_m": left_m},
+        }
+        return Version(document, size_m + left_m)
+
+    old, new = version(0.0, 1e-6), version(1e-3, 2e-4)
+    assert explain_change(old, version(1e-3, 1e-5), 1e-3, math.inf)[0] != ()
+    assert explain_change(old, new, 1e-3, math.inf) == ((), None)
