@@ -45,8 +45,8 @@ CHANCE = 0.01
 MOST_DIGITS = 7
 FACTOR_DIGITS = 4
 
-# Changes that a program may have, about: the number of accidents that may be mistaken for a cause. Divided by the chance
-# above, how many times as large a drift has to be without a cause for the cause to be no accident beside it.
+# Changes that a program may have, about: the number of accidents that may be mistaken for a cause. Divided by
+# the chance above, how many times as large a drift has to be without a cause for it to be no accident beside it.
 # tests/compare/diagnosis/test_drift.py; tests/compare/diagnosis/test_wild.py
 CATALOGUE = 80
 
