@@ -13,6 +13,7 @@ import itertools
 import json
 import math
 import random
+import re
 import shutil
 import statistics
 import subprocess
@@ -239,7 +240,8 @@ def record(
     spent = time.process_time() - begun
     explanation = found.explanation
     words = {word for word in found.words if "|" not in word}
-    words |= {"slip"} if explanation is not None and explanation.slip.startswith("It") else set()
+    slipped = explanation is not None and re.search("accelerations|formula", explanation.slip)
+    words |= {"slip"} if slipped else set()
     either = [
         [word for word in each for word in word.split("+")] for each in alternatives(explanation)
     ]
