@@ -291,7 +291,7 @@ def _print_dataset(solution: Solution, folder: Path, as_json: bool) -> None:
         emit(measured)
         return
 
-    heading(f"{folder}: written")
+    heading(f"{folder}: written", wraps=False)
     typer.echo("")
     echo(facts(_dataset_facts(solution, measured)))
     typer.echo("")
@@ -373,7 +373,7 @@ def _print_ranges(ranges: Ranges, folder: Path, as_json: bool) -> None:
         emit({"dataset": ranges_id(ranges), "out": str(folder), "period_s": period, **counts})
         return
 
-    heading(f"{folder}: written")
+    heading(f"{folder}: written", wraps=False)
     typer.echo("")
     echo(facts(_ranges_facts(ranges, period)))
     typer.echo("")

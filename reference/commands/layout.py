@@ -124,9 +124,14 @@ def _blocks(columns: Sequence[TextColumn], keys: int, width: int) -> Iterator[li
     yield block
 
 
-def heading(text: str) -> None:
-    """Print a text in lines, in bold type on a terminal (unless NO_COLOR is set)."""
-    lines = "\n".join(paragraph(text, hanging=_INDENT))
+def heading(text: str, *, wraps: bool = True) -> None:
+    """Print a text in bold type on a terminal (unless NO_COLOR is set).
+
+    Args:
+        text: what to print.
+        wraps: whether it may take several lines; a path with a word behind it is one line.
+    """
+    lines = "\n".join(paragraph(text, hanging=_INDENT)) if wraps else text
     terminal = terminal_of(sys.stdout)
     if not _shows_bold_type():
         typer.echo(lines)

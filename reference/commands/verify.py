@@ -98,7 +98,7 @@ def _checked_dataset(folder: Path, recompute: bool, show: Show) -> _Check:
 def _print(folder: Path, check: _Check) -> None:
     """Print the verdict on a folder, then its problems, what was not decided, and notes."""
     verdict = "WRONG" if check.problems else "ok"
-    heading(f"{folder}: {verdict}")
+    heading(f"{folder}: {verdict}", wraps=False)
     for line in [*check.problems, *check.undecided, *check.notes]:
         echo(paragraph(line, "  ", hanging="  "))
 
