@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
+from reference.errors import Described
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
@@ -89,12 +90,12 @@ def _candidate_of(states: Array, times: Array) -> Candidate:
         InputError: the states have another shape.
     """
     if states.ndim == 2 and 1 < states.shape[0] != times.size == states.shape[1]:
-        got = f"shape {states.shape} for {times.size} times"
-        advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
+        got = Described(f"shape {states.shape} for {times.size} times")
+        advice = "Give one row for each time: transpose the array, as in sol.y.T of SciPy."
         raise InputError("states", got, "shape (rows, columns)", advice)
     if states.ndim != 2 or states.shape[1] not in (2, 3, 6):
         expected = "shape (rows, 2), (rows, 3) or (rows, 6)"
-        raise InputError("states", f"shape {states.shape}", expected)
+        raise InputError("states", Described(f"shape {states.shape}"), expected)
     names = COLUMNS[: states.shape[1]]
     return candidate_of("states", {"t": times, **dict(zip(names, states.T, strict=True))})
 

@@ -169,7 +169,8 @@ def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:
     square = l2 - x * x - y * y
     if not np.min(square) > 0:
         raise UnreachableError(
-            "the approximate motion leaves the sphere.", "The amplitude is beyond its domain."
+            "the approximate motion leaves the sphere.",
+            "The amplitude is too large for this approximation.",
         )
     z = -np.sqrt(square)
     return np.column_stack((x, y, z, vx, vy, -(x * vx + y * vy) / z))

@@ -27,7 +27,7 @@ def seconds_of(text: str, where: str) -> Fraction:
         return _since_1970(moment, where)
     clock = CLOCK.fullmatch(text)
     if clock is None:
-        raise InputError(where, text[:40], "a time as in the first row", HOW)
+        raise InputError(where, text[:40], "a time in the form of the first row", HOW)
     hours, minutes, seconds = clock.groups()
     if hours is None and not {".", ","} & {*seconds}:
         advice = "Are these hours and minutes, or minutes and seconds?"
@@ -45,7 +45,7 @@ def _since_1970(moment: re.Match[str], where: str) -> Fraction:
     try:
         days = (date(int(year), int(month), int(day)) - date(1970, 1, 1)).days
     except ValueError:
-        raise InputError(where, moment[0][:40], "a date of the calendar", HOW) from None
+        raise InputError(where, moment[0][:40], "a date that exists", HOW) from None
     zone_s = 0
     if sign:
         zone_s = (int(zone_hours) * 60 + int(zone_minutes)) * 60

@@ -61,7 +61,7 @@ def _section_word(section: str, scene: Scene) -> str:
     words = scene.with_values({"run.sections": section}).run.sections or ()
     if len(words) != 1:
         raise InputError(
-            "--section", section, "one section", "Score the passages of each by themselves."
+            "--section", section, "one section", "Score the passages of each section by themselves."
         )
     return words[0]
 

@@ -62,7 +62,7 @@ def listed(text: str | None, field: str) -> list[str] | None:
         return None
     words = [word.strip() for word in text.split(",") if word.strip()]
     if not words:
-        raise InputError(field, text, "at least one word", "Separate several with commas.")
+        raise InputError(field, text, "at least one word", "Separate words by commas.")
     return words
 
 
@@ -72,7 +72,7 @@ def numbers(text: str, field: str) -> list[float]:
 
     values = parsed(text.split(","), float)
     if not values or not all(0 < value < float("inf") for value in values):
-        raise InputError(field, text, "positive numbers", "Separate several with commas.")
+        raise InputError(field, text, "positive numbers", "Separate numbers by commas.")
     return values
 
 

@@ -76,7 +76,7 @@ def plot(
     available = list(panels(motion))
     missing = next((word for word in requested or () if word not in available), None)
     if missing is not None:
-        raise InputError("--what", missing, f"what there is of {source}: {in_words(available)}")
+        raise InputError("--what", missing, f"a picture of {source}: {in_words(available)}")
     write_file(target, motion_picture(motion, requested or available, target), "--out")
     typer.echo(f"{target}: the picture")
 

@@ -26,6 +26,7 @@ from reference.commands.terminal import (
     scene_argument,
     widths_by_name,
 )
+from reference.errors import NOTHING, Described
 
 from .options import announce, check_positive, listed
 
@@ -246,7 +247,7 @@ class ScoreOptions:
         """
         if self.scene_word is None:
             raise InputError(
-                "SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them."
+                "SCENE", NOTHING, "a scene's id, or --suite DIR", "`foucault scenes` lists the ids."
             )
         if self.named_ranges is not None:
             return self.named_ranges.scene
@@ -378,16 +379,15 @@ def _check_standard_input(options: ScoreOptions) -> None:
     """
     files = [*(options.candidates or ()), options.transits]
     if files.count("-") > 1:
-        raise InputError(
-            "CANDIDATE", "- more than once", "standard input once", "It can be read only once."
-        )
+        got = Described("- more than once")
+        raise InputError("CANDIDATE", got, "- once", "Standard input can be read only once.")
 
 
 def _check_values(options: ScoreOptions) -> None:
     """Refuse values that are out of range, and a picture that cannot be written."""
     covers = options.covers
     if covers is not None and not 0 < covers <= 1:
-        expected = "a share of the scene's span, above 0 and up to 1"
+        expected = "a share of the scene's span, above 0 and at most 1"
         raise InputError("--covers", f"{covers:g}", expected)
 
     check_positive("--timeout", options.timeout)
@@ -427,7 +427,7 @@ def _outcomes_of_scene(options: ScoreOptions, judging: Judging) -> list[Outcome]
     outcomes = list(_outcomes(options, judging))
     if not outcomes:
         expected = "a file, - for stdin, --run, --transits or --approximation"
-        raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
+        raise InputError("CANDIDATE", NOTHING, expected, "Say what to score.")
 
     error = outcomes[0].error
     is_reported = options.github or options.junit
@@ -524,7 +524,7 @@ def _compare_with_ranges(options: ScoreOptions, ranges: Ranges, naming: Naming) 
     files = options.candidates or []
     if not files and options.transits is None:
         expected = "a file, - for stdin, or --transits"
-        raise InputError("CANDIDATE", "nothing", expected, "Name what was measured.")
+        raise InputError("CANDIDATE", NOTHING, expected, "Say where the measurements are.")
 
     passages = None
     if options.transits is not None:
@@ -546,7 +546,7 @@ def _compare_passages(options: ScoreOptions, naming: Naming) -> None:
         raise InputError(
             "CANDIDATE",
             options.candidates[0],
-            "no file beside that of --transits",
+            "the file of --transits alone",
             "Put all passages into one file: "
             "`foucault score SCENE --transits FILE --section WORD`.",
         )

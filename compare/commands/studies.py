@@ -136,9 +136,7 @@ STUDY_CONFLICTS = [
     ),
     Conflict("--name --settings", "without --run", lambda options: not options.run),
     Conflict("--cpu", "without --candidates", lambda options: not options.candidates),
-    Conflict(
-        "--settings", "with a --run that has no {setting}", lambda options: not _varied(options)
-    ),
+    Conflict("--settings", "without {setting} in --run", lambda options: not _varied(options)),
 ]
 STABILITY_CONFLICTS = [
     Conflict("--name", "without --run", lambda options: not options.run),

@@ -27,6 +27,7 @@ from reference.commands.terminal import (
     scene_argument,
     stoppable,
 )
+from reference.errors import NOTHING
 from reference.scenes.fields import LEVELS
 from reference.status import Status
 from reference.system.workers import usable_cores
@@ -104,7 +105,7 @@ class SweepOptions:
 CONFLICTS = [
     Conflict(
         "--over --rows --set --t-end --want --section --level --digits --tolerance --engine --audit",
-        "without SCENE, when a sweep is gone on with",
+        "without SCENE, when a sweep is resumed",
         lambda options: options.scene_word is None,
     ),
 ]
@@ -151,7 +152,7 @@ def _request(options: SweepOptions) -> Request:
 
     if options.scene_word is None:
         if options.out is None:
-            raise InputError("SCENE", "nothing", "a scene, or --out DIR with a sweep to go on with")
+            raise InputError("SCENE", NOTHING, "a scene, or --out DIR with a sweep to resume")
         return Store.opened(options.out).request
 
     sections = ",".join(options.section) if options.section else None

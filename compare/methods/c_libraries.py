@@ -163,7 +163,7 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
                     (line for line in ran.stderr.splitlines() if "error" in line), "no message"
                 )
                 raise IntegrationError(
-                    f"a program for {library.name} does not compile here: {first}"
+                    f"this machine cannot compile a program that uses {library.name}: {first}"
                 )
             made.replace(path)
 

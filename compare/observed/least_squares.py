@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError
+from reference.errors import Described
 from reference.numbers.precision import Array
 
 Numbers = npt.NDArray[Any]  # real or complex
@@ -155,8 +156,9 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     """
     points = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a > 0 and b > 0]
     if len({u for u, _ in points}) < 2 or len(points) < LEAST_POINTS:
-        got = f"{len(points)} with x > 0 and y > 0"
-        raise InputError("points", got, f"at least {LEAST_POINTS}, not all at the same x")
+        got = Described(f"{len(points)} with x > 0 and y > 0")
+        expected = f"at least {LEAST_POINTS}, with different values of x"
+        raise InputError("points", got, expected)
     logs_x, logs_y = zip(*points, strict=True)
     exponent, constant = statistics.linear_regression(logs_x, logs_y)
     residuals = [v - constant - exponent * u for u, v in points]

@@ -65,7 +65,7 @@ class Gauge:
         square = tension(hanging, (0, 0, 0), start.k) + turn**2
         if not square > 0:
             raise UnreachableError(
-                "nothing pulls the bob back to its rest position: there is no swing to measure."
+                "no force pulls the bob back to its rest position, so there is no swing to measure."
             )
         east, north, up = hanging if rest is None else scaled(rest, start.k.length)
         return cls(
@@ -163,7 +163,7 @@ def frequency(scene: Scene, swings: int = 50) -> float:
     times, _ = _apsides_of(scene, gauge, (swings + 1) * gauge.period)
     if len(times) < 3:
         raise UnreachableError(
-            "the bob does not swing: it has no largest distances from its rest position."
+            "the bob does not swing: its distance from the rest position has no maximum."
         )
     return float((len(times) - 1) / (2 * (times[-1] - times[0])))
 

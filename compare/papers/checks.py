@@ -136,7 +136,7 @@ class Identity(Check):
         if gap < ZERO_BELOW:
             if self.corrected is not None:
                 raise UnexplainedError(
-                    f"{self.id}: the print is right, yet a correction is declared"
+                    f"{self.id}: the printed formula is right, although a correction is declared"
                 )
             return self.judged(recomputed, "exact")
         if (
@@ -144,7 +144,8 @@ class Identity(Check):
             or largest_gap([self.corrected(p) for p in sample], truth) >= ZERO_BELOW
         ):
             raise UnexplainedError(
-                f"{self.id}: the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
+                f"{self.id}: the printed formula has a relative error of {shown(gap, 3)}, "
+                "and no declared correction removes it"
             )
         note = f"as printed {shown(printed[0], 6)}"
         remark = f"{self.remark} ({note})" if self.remark else note
@@ -272,13 +273,13 @@ class Statement(Check):
         if finding.holds:
             if self.corrected is not None:
                 raise UnexplainedError(
-                    f"{self.id}: the sentence holds, yet a correction is declared"
+                    f"{self.id}: the sentence is true, although a correction is declared"
                 )
             if finding.error:
                 return self.judged(finding.recomputed, "approximation", error=finding.error)
             return self.judged(finding.recomputed, "reproduced" if self.by_run else "exact")
         if self.corrected is None or not self.corrected():
             raise UnexplainedError(
-                f"{self.id}: neither the sentence nor a declared correction holds"
+                f"{self.id}: neither the sentence nor a declared correction is true"
             )
         return self.judged(finding.recomputed, "misprint", correction=self.correction)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from reference import InputError, load_scene
+from reference.errors import Described
 from reference.numbers.precision import Array
 from reference.system.documents import texts_of
 
@@ -240,9 +241,9 @@ def check_methods() -> None:
         if missing is not None:
             raise InputError(
                 "--out",
-                f"no {name}",
-                "the methods of figure 9 (extra `methods`)",
-                f"It is {missing}.",
+                Described(f"{name}: {missing}"),
+                "all methods of figure 9",
+                "Install them with pip install 'foucault-reference[methods]'.",
             )
 
 

@@ -66,9 +66,13 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
         if (existing is not None and not _is_ours(folder / PAGE)) or (
             folder.exists() and not folder.is_dir()
         ):
-            reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
+            reason = (
+                "It is not a folder"
+                if existing is None
+                else f"It contains a {existing} that no run wrote"
+            )
             expected = "a new folder, or one that an earlier run wrote"
-            raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
+            raise InputError("--out", str(folder), expected, f"{reason}. Choose another name.")
         absolute = folder.absolute()
         place = next(path for path in (absolute, *absolute.parents) if path.exists())
         with tempfile.TemporaryFile(dir=place):

@@ -217,10 +217,10 @@ def check(request: Request, path: Path) -> None:
     check_target(path)
     table = request.table
     if table.typed is None or len(table.shape) > 2 or set(table.values) & set(WORD_FIELDS):
-        expected = "one or two fields varied by --over, both numbers"
-        raise InputError("--plot", str(path), expected, "Or draw the columns.")
+        expected = "a sweep over one or two numerical fields (--over)"
+        raise InputError("--plot", str(path), expected, "Draw other sweeps from their columns.")
     if not _drawn(request):
-        raise InputError("--plot", str(path), "--want with frequency or precession")
+        raise InputError("--plot", str(path), "frequency or precession in --want")
 
 
 def draw(swept: Swept, path: Path) -> None:

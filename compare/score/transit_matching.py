@@ -240,9 +240,9 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
         transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"
 
     if transits == "not asked for":
-        return "the scene asks for no transits (run.transits): the candidate's were not judged"
+        return "the scene does not look for transits (run.transits), so the candidate's were not judged"
     if transits == "xdot is identically zero":
-        return f"{transits}: the candidate's transits were not judged"
+        return f"{transits}, so the candidate's transits were not judged"
     return None
 
 

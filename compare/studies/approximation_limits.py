@@ -10,6 +10,7 @@ from itertools import groupby
 import numpy as np
 
 from reference import FoucaultError, InputError, Scene, parse_scene
+from reference.errors import Described
 from reference.status import Status
 
 from ..approximations.approximation import Motion
@@ -194,7 +195,7 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
         centre_y = case.ctx.mpf(case.rest[1]) * case.length
         amplitude = case.ctx.hypot(x, y - centre_y)
         if not amplitude:
-            got = f"x = {scene.release.x}, y = {scene.release.y}"
+            got = Described(f"x = {scene.release.x}, y = {scene.release.y}")
             raise InputError("release", got, "a release away from the rest position")
         ratio = target / amplitude
     release = {

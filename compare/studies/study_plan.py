@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from reference import InputError, Scene
+from reference.errors import Described
 from reference.numbers.precision import DOUBLE_BITS
 
 from ..methods import METHODS
@@ -124,11 +125,10 @@ def _check_usable(methods: Sequence[str] | None) -> None:
     if all(reasons.values()):
         why = (
             "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
-            or "None stands for all"
+            or "None means all methods"
         )
-        raise InputError(
-            "methods", ", ".join(reasons) or "no id", "a method that can run here", f"{why}."
-        )
+        got = ", ".join(reasons) if reasons else Described("no id")
+        raise InputError("methods", got, "a method that can run here", f"{why}.")
 
 
 def bits_of(text: str) -> list[int]:
@@ -139,7 +139,7 @@ def bits_of(text: str) -> list[int]:
     """
     precisions = sorted({*parsed(text.split(","), int)})
     if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > _MOST_BITS:
-        expected = f"bits from {DOUBLE_BITS} to {_MOST_BITS}, such as 53,64,113,256,512"
+        expected = f"numbers of bits from {DOUBLE_BITS} to {_MOST_BITS}, such as 53,64,113,256,512"
         raise InputError("--precisions", text, expected, "Separate them by commas.")
     return precisions
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..engines import AUTO, engine_names
-from ..errors import InputError, counted, in_words
+from ..errors import NOTHING, InputError, counted, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS
 from ..scenes.scene import load_scene, unit_of
 from ..scenes.shipped import scene_ids
@@ -134,7 +134,7 @@ class _GenerateOptions:
         """The scene to solve, its fields replaced."""
         if self.scene_word is None:
             raise InputError(
-                "SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them."
+                "SCENE", NOTHING, "a scene, or --all", "`foucault scenes` lists the scenes."
             )
         return load_scene(self.scene_word, self.replaced)
 
@@ -277,7 +277,9 @@ def _solved(options: _GenerateOptions, making: Making, show: Show) -> Solution:
         solution = solve(scene, **making.solve_options(scene), report=_report(scene, show))
     run = solution.run
     if options.engine not in (AUTO, run.engine):
-        advice = f"So few digits need only {run.number}, which {options.engine} does not have."
+        advice = (
+            f"So few digits need only numbers of type {run.number}, which {options.engine} lacks."
+        )
         raise InputError("--engine", options.engine, f"{AUTO} or {run.engine}", advice)
     return solution
 
@@ -343,7 +345,7 @@ def _generate_ranges(options: _GenerateOptions, widths: dict[str, str]) -> None:
     from ..solver.uncertain import prove_ranges
 
     if options.level not in (None, "enclosed"):
-        expected = "enclosed, together with uncertain inputs"
+        expected = "enclosed, because inputs are uncertain"
         raise InputError("--level", options.level, expected, "Ranges are always proved.")
     if options.out is not None:
         check_target(options.out, RANGES)

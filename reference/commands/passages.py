@@ -46,7 +46,7 @@ def asked_passages(words: Sequence[str] | None) -> list[Asked]:
 
 
 def _asked(word: str) -> Asked:
-    expected = "the number of a passage, 50, or with half of the width wanted, 50=±0.1 (in s)"
+    expected = "the number of a passage, such as 50, or with half the wanted width in s, 50=±0.1"
     number, sign, width = word.partition("=")
     if not number.strip().isdecimal() or int(number) < 1:
         raise InputError("--passage", word, expected)
@@ -58,7 +58,7 @@ def _asked(word: str) -> Asked:
     except InputError:
         raise InputError("--passage", word, expected) from None
     if wanted <= 0:
-        raise InputError("--passage", word, expected, "A width is above 0.")
+        raise InputError("--passage", word, expected, "Give a width above 0.")
     return Asked(int(number), wanted)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from ..errors import FoucaultError, InputError, NotInstalledError, UnreachableError
+from ..errors import NOTHING, FoucaultError, InputError, NotInstalledError, UnreachableError
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings
 from .layout import echo, facts, heading, paragraph
@@ -110,7 +110,7 @@ def _show(options: _ShowOptions) -> None:
         return
     if scene is None or options.scene_word is None:
         expected = "a scene's id or the path of a TOML file"
-        raise InputError("SCENE", "nothing", expected, "`foucault scenes` lists the ids.")
+        raise InputError("SCENE", NOTHING, expected, "`foucault scenes` lists the ids.")
     from .cautions import warn
 
     parts = _parts(scene, options)
@@ -195,8 +195,8 @@ def _check_no_width(passages: list[str] | None) -> None:
     """
     for word in passages or ():
         if "=" in word:
-            expected = "the number of a passage alone: no input is uncertain"
-            raise InputError("--passage", word, expected, "Give widths by --uncertain.")
+            expected = "the number of a passage without a width, because no input is uncertain"
+            raise InputError("--passage", word, expected, "Say what is uncertain by --uncertain.")
 
 
 def _checked_parts(

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError, Stopped, check_whole, did_you_mean, in_words
+from ..errors import InputError, NoEffectError, Stopped, check_whole, did_you_mean, in_words
 from ..plain_text import plain_json
 from ..scenes.scene import Scene, field_names, full_name
 from ..scenes.shipped import scene_ids
@@ -60,7 +60,7 @@ Uncertain = Annotated[
     ),
 ]
 # why an option is refused
-BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"
+BESIDE_RANGES = "while inputs are uncertain (--uncertain none takes them as exact)"
 EndTime = Annotated[
     str | None, option("--t-end", "End at this time, in s (default: the scene's).", "S")
 ]
@@ -135,8 +135,8 @@ def replacements(
         value = f"{field}={text}"
         same_end = option == "--t-end" and values.get(field) == value
         if field in values and not same_end:
-            expected = f"no such option together with --set {values[field]}"
-            raise InputError(option, text, expected, "Keep one.")
+            expected = f"no second value beside --set {values[field]}"
+            raise InputError(option, text, expected, "Keep one of the two.")
         values[field] = value
     return list(values.values())
 
@@ -155,12 +155,12 @@ def _assigned(
         field = full_name(word)
         reason = unused.get(field) or unused.get(f"{field}{sign}{value.strip()}")
         if reason and note is None:
-            raise InputError("--set", assignment, "a field that makes a difference here", reason)
+            raise InputError("--set", assignment, "a field that has an effect here", reason)
         if reason and note is not None:
-            note(f"--set {assignment} makes no difference here. {reason}")
+            note(f"--set {assignment} has no effect here. {reason}")
         if field in values:
-            advice = f"{values[field]} stands before it: keep one."
-            raise InputError("--set", assignment, f"{field} once", advice)
+            advice = f"--set {values[field]} is given as well: keep one of the two."
+            raise InputError("--set", assignment, f"one value of {field}", advice)
         values[field] = assignment
     return values
 
@@ -180,7 +180,8 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
         if not sign or not name:
             raise InputError("--uncertain", word, "KEY=±WIDTH, such as pendulum.length=±0.001")
         if name in typed:
-            raise InputError("--uncertain", word, f"one width of {name}")
+            advice = f"{name}={typed[name]} is given as well: keep one of the two."
+            raise InputError("--uncertain", word, f"one width of {name}", advice)
         typed[name] = width
     overridden = {full_name(name) for name in typed}
     widths = {name: width for name, width in scene.uncertain.items() if name not in overridden}
@@ -196,8 +197,7 @@ def refuse(options: Mapping[str, object], why: str) -> None:
     """
     for option, value in options.items():
         if value is not None and value is not False and value != []:  # 0 was given
-            expected = f"no such option {why}"
-            raise InputError(option, _as_typed(value), expected, "It would have no effect.")
+            raise NoEffectError(option, _as_typed(value), why)
 
 
 def _as_typed(value: object) -> str:

@@ -94,17 +94,17 @@ def _check_form(record: FunctionRecord, text: str, data: bytes) -> None:
         ValueError: the first rule that is broken.
     """
     if record.text() != text:
-        raise ValueError("is not in the form in which it is written")
+        raise ValueError("is not in the form in which this project writes it")
     if tuple(record.bounds) != STATE:
         raise ValueError(f"bounds: must name {', '.join(STATE)}")
     components = POSITION[:2] if record.length_squared else POSITION
     if tuple(record.components) != components:
-        raise ValueError("components: must be x, y, and z if there is no length_squared")
+        raise ValueError("components: must be x, y and, without length_squared, z")
     pieces = len(record.times) - 1
     if pieces < 1 or float.fromhex(record.times[0]) != 0:
         raise ValueError("times: must increase from 0")
     if len(data) != 8 * pieces * len(components) * (record.degree + 1):
-        raise ValueError("function.f64 has another size")
+        raise ValueError("function.f64 has the wrong size")
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ def _transits(function: GoldenFunction, scene: Scene, manifest: Manifest) -> _Si
         if len(zeros.times) >= count:
             break
     if scene.run.transits and count != len(zeros.times):
-        raise ValueError(f"xdot has {len(zeros.times)} zeros, the manifest counts {count}")
+        raise ValueError(f"xdot has {len(zeros.times)} zeros, but the manifest says {count}")
     return _SignChanges(zeros.times[:count], zeros.signs[:count])
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DatasetError, InputError, counted
+from ..errors import DatasetError, Described, InputError, counted
 from ..numbers.columns import POSITION, STATE, Framed, GridColumns, place_of
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
@@ -72,7 +72,9 @@ class PrintedTable(Framed):
         # a table without rows has no bounds
         bounded = self._bounds if len(self) else self.columns
         if name not in bounded:
-            raise KeyError(f"a dataset bounds {', '.join(['t', *self._bounds])}, not {name!r}")
+            raise KeyError(
+                f"there is no bound of {name!r}; there are {', '.join(['t', *self._bounds])}"
+            )
         return [Fraction(self._bounds[name])] * len(self) if len(self) else []
 
     def decimals(self, name: str) -> list[str]:
@@ -210,8 +212,8 @@ class _Sections(dict[str, PrintedTable]):
     """The passages of each section, by its word; a word that is not there is refused."""
 
     def __missing__(self, word: str) -> PrintedTable:
-        expected = f"a section of sections.csv, of which there are: {', '.join(self) or 'none'}"
-        advice = "reference.solve(golden.scene, sections=…) finds any."
+        expected = f"a section in sections.csv ({', '.join(self) or 'it has none'})"
+        advice = "reference.solve(golden.scene, sections=…) finds the passages of others."
         raise InputError("sections", word, expected, advice)
 
 
@@ -295,7 +297,7 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     later = float(grid[-1] - grid[-2]) + _ROUNDED * float(grid[-1])
     requested = np.unique(moments_of(times, grid[-1], later))
     if not requested.size:
-        raise InputError("t", "no times", "at least one time in s")
+        raise InputError("t", Described("no times"), "at least one time in s")
     exact_times = [Fraction(t) for t in requested.tolist()]
     row = {t: i for i, t in enumerate(grid)}
     if row.keys() >= set(exact_times):

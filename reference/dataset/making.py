@@ -57,7 +57,7 @@ class Making:
         """
         match = _OPTIONS.search(command)
         if match is None:
-            raise ValueError(f"no options that say how a dataset is made in {command!r}")
+            raise ValueError(f"the command {command!r} has no options for making a dataset")
         confirm = "none" if match["no_confirm"] else match["confirm"] or "whole"
         return cls(
             engine=match["engine"],

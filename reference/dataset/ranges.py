@@ -57,7 +57,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
     """
     if not isinstance(ranges, Ranges):
         raise InputError(
-            "ranges", ranges, "what prove_ranges returns", "A Solution is written by write."
+            "ranges", ranges, "what prove_ranges returns", "To write a Solution, use write."
         )
     folder = checked_path("folder", folder, "the folder to write to")
     check_target(folder, RANGES)
@@ -123,7 +123,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
     try:
         manifest = json_document(folder / RANGES, "PATH")
     except FileNotFoundError:
-        advice = "`foucault generate SCENE --uncertain …` makes them."
+        advice = "Make them by `foucault generate SCENE --uncertain …`."
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
         texts = _checked_texts(folder, manifest)

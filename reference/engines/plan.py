@@ -30,9 +30,7 @@ Report = Callable[[float], None]  # called with the simulated time reached, in s
 # called with the steps taken and the time reached; raises to end a run
 Pace = Callable[[int, float], None]
 
-AT_REST = (
-    "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
-)
+AT_REST = "If xdot is rounding error only, as for a bob at rest, do not look for transits: run.transits = false."
 # longest step times the swing's frequency: a small swing's series reach further, bounds do not
 MOST_TURN = 1.75
 

@@ -228,8 +228,8 @@ class Ranges(WithZeros[Intervals]):
         name = full_name(name)
         derivatives = self._derivatives
         if derivatives is None:
-            expected = "ranges that were solved with derivatives"
-            advice = "Write reference.prove_ranges(…, derivatives=True)."
+            expected = "ranges that were proved with derivatives"
+            advice = "Call reference.prove_ranges(…, derivatives=True)."
             raise InputError("derivative", name, expected, advice)
         names = derivatives.names
         if name not in names:

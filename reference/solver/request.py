@@ -84,7 +84,7 @@ class ProofOptions:
         }
         for name, value in wanted.items():
             if value:
-                advice = "Nothing else has the proof that it takes."
+                advice = "Only level enclosed has the proof that this needs."
                 raise InputError(name, level, "the level enclosed", advice)
 
 

@@ -80,7 +80,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
             return _digits_lost_by(worst / nudge)
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(
-        f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be "
+        f"Even at {MAX_PREC} bits, perturbed runs diverge completely, so the sensitivity cannot be "
         "measured.",
         "Ask for a shorter run: run.t_end.",
     )

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import numpy.typing as npt
 
 from ..engines.plan import Run
-from ..errors import InputError, UnreachableError, counted
+from ..errors import Described, InputError, UnreachableError, counted
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
 from ..numbers.table import Table, UndecidedNumber, decimals_of, resolved
@@ -197,7 +197,8 @@ class Solution(GridColumns, WithZeros[Table]):
         """
         if self.function is None:
             advice = "Solve it with level='enclosed', function=True, or write it and load it."
-            raise InputError("at", "a solution without a golden function", "one with it", advice)
+            got = Described("a solution without a golden function")
+            raise InputError("at", got, "a solution with a golden function", advice)
         return self.function.at(t)
 
     def __repr__(self) -> str:

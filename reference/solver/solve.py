@@ -216,9 +216,7 @@ def _agreed(request: SolveRequest, pilot: Pilot) -> Solution:
             # limbs hold no more bits of a swing much smaller than the cord
             last_resort = fastest(MAX_PREC).name
             if published.plan.engine == last_resort:
-                raise UnreachableError(
-                    "Two runs disagree, and a higher precision does not bring them together."
-                )
+                raise UnreachableError("Two runs disagree, even at a higher precision.")
             request = replace(request, engine=last_resort)
         last_gap = largest_gap
 
@@ -227,9 +225,9 @@ def _agreed(request: SolveRequest, pilot: Pilot) -> Solution:
             break
         prec = next_prec
     raise UnreachableError(
-        f"Two runs up to {prec} bits do not agree to {digits} digits.",
+        f"Two runs of up to {prec} bits do not agree to {digits} digits.",
         "Ask for fewer digits or a shorter run; "
-        "a transit that only grazes xdot = 0 cannot be decided this way.",
+        "two runs cannot decide whether xdot touches zero or crosses it.",
     )
 
 

@@ -25,21 +25,19 @@ _CERTAIN = 1e-6
 _CLEAR = 16
 HOUR = 3600
 # Why there is no swing, no precession or no full turn
-NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
+NO_SWING = "it has fewer than two highest points: the bob does not swing to and fro, or the run is too short"
 LEAN = (
     f"its last swing is less than {_CLEAR} times as wide as the rest position is off the plumb line"
 )
-NO_SECTION = "the section highest was not asked for, from which the swing follows"
+NO_SECTION = "it needs the section highest, which the scene does not ask for"
 UNDECIDED = "it is not decided which of its points are the highest"
-ONE_SIDE = (
-    "highest points that follow one another lie on one side: they are not the ends of a swing"
-)
+ONE_SIDE = "successive highest points lie on the same side: they are not the ends of a swing"
 FAST = (
     "the site may turn by a right angle or more from one highest point to the next: "
-    "nobody can tell which way"
+    "the direction cannot be determined"
 )
 SMALL = "the plane turns by less than it may seem to, since the rest position is off the plumb line"
-_LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
+_LOST = "the plane may turn too far from one highest point to the next to be followed"
 _ARC = Fraction(21, 20)  # a little more than π/3
 _DEGREES = Fraction(573, 10)  # a little more than a radian in degrees
 

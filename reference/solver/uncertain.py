@@ -10,7 +10,7 @@ from typing import Any
 
 from ..engines.plan import Report
 from ..engines.registry import checked
-from ..errors import InputError, unknown
+from ..errors import NOTHING, Described, InputError, unknown
 from ..numbers.columns import STATE
 from ..numbers.precision import fixed_decimal
 from ..numbers.taylor_step import TaylorStep
@@ -48,7 +48,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         raise InputError("widths", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
     if not uncertain:
         example = "an input with its width, length=±0.001"
-        raise InputError("--uncertain", "nothing", example, _INPUT_NAMES)
+        raise InputError("--uncertain", NOTHING, example, _INPUT_NAMES)
 
     widths: dict[str, Fraction] = {}
     for word, text in uncertain.items():
@@ -56,7 +56,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         field = f"uncertain.{word}" if scene.uncertain.get(word) == text else f"--uncertain {word}"
         _check_input(scene, name, field, word, text)
         if name in widths:
-            raise InputError(field, text, f"{name} once", "Give one width for each input.")
+            raise InputError(field, text, f"one width of {name}", "Give one width for each input.")
         widths[name] = _width(field, text)
     _check_ends(scene, widths)
     if scene.exact.position:
@@ -83,7 +83,7 @@ def _width(field: str, text: Any) -> Fraction:
     except InputError:
         raise InputError(field, text, _EXAMPLE) from None
     if width <= 0:
-        raise InputError(field, text, "a width above 0", "Leave out an input that is certain.")
+        raise InputError(field, text, "a width above 0", "Leave out inputs that are exact.")
     return width
 
 
@@ -95,7 +95,7 @@ def _check_ends(scene: Scene, widths: Mapping[str, Fraction]) -> None:
             try:
                 checked_value(name, decimal(end), "decimal")
             except InputError as error:
-                reached = f"±{decimal(half)}, up to {decimal(end)}"
+                reached = Described(f"±{decimal(half)}, up to {decimal(end)}")
                 advice = "Take a smaller width."
                 raise InputError(f"--uncertain {name}", reached, error.expected, advice) from None
 
@@ -106,7 +106,7 @@ def _check_release(scene: Scene, widths: Mapping[str, Fraction]) -> None:
     shortest = inputs["pendulum.length"] - widths.get("pendulum.length", 0)
     x, y = (abs(inputs[name]) + widths.get(name, 0) for name in ("release.x", "release.y"))
     if x**2 + y**2 >= shortest**2:
-        reached = f"x up to {decimal(x)}, y up to {decimal(y)}"
+        reached = Described(f"x up to {decimal(x)}, y up to {decimal(y)}")
         expected = "a release below the suspension"
         raise InputError("--uncertain", reached, expected, "Take smaller widths.")
 

@@ -186,7 +186,7 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
         if reason == _STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
         elif promote is None:
-            part.fail(place, Status.DOUBTFUL, f"{reason} It takes more digits.".strip())
+            part.fail(place, Status.DOUBTFUL, f"{reason} The row needs more digits.".strip())
         else:
             _promote(request, part, place, reason, promote)
 

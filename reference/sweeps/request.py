@@ -21,7 +21,7 @@ from pydantic.dataclasses import dataclass as checked
 from ..engines import AUTO
 from ..engines.batch_interface import Batch, RunOptions
 from ..engines.registry import batches
-from ..errors import InputError, check_whole, unknown
+from ..errors import NOTHING, Described, InputError, check_whole, unknown
 from ..model.sections import direction_of
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
@@ -98,9 +98,9 @@ class Settings:
             checked_value("run.digits", str(self.digits), reading)
         tolerance = self.tolerance
         if tolerance is not None and not (isinstance(tolerance, Real) and tolerance >= 0):
-            raise InputError("--tolerance", tolerance, "a number of metres from 0")
+            raise InputError("--tolerance", tolerance, "a number of metres, 0 or more")
         if self.audit is not None:
-            check_whole("--audit", self.audit, 0, "a number of rows from 0")
+            check_whole("--audit", self.audit, 0, "a number of rows, 0 or more")
 
     @property
     def promotes(self) -> bool:
@@ -283,7 +283,7 @@ def request(
     settings.check(scene.inputs)
     words = list(over)
     if bool(words) == (rows is not None):
-        got = " ".join(words) or "nothing"
+        got = Described("both --over and --rows") if words else NOTHING
         expected = "--over KEY=…, or --rows FILE"
         raise InputError("--over", got, expected, "Give one of the two.")
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
@@ -326,8 +326,8 @@ def _check_release(scene: Scene, keys: Iterable[str]) -> None:
     for key in keys:
         if key in refused:
             names = ", ".join(f"release.{name}" for name in kind)
-            expected = f"one of {names}, the scene's kind of release"
-            raise InputError("--over", key, expected, "Or take a scene with the other kind.")
+            expected = f"one of {names}, by which this scene is released"
+            raise InputError("--over", key, expected, "Or choose a scene released the other way.")
 
 
 def _swings(scene: Scene) -> float:

@@ -86,14 +86,16 @@ class Store:
             request = Request.of(document)
             unchanged = request.hash == document["hash"]
         except FileNotFoundError:
-            expected = f"a folder of a sweep, with {PLAN}"
-            advice = "Give a scene and --over to begin one."
+            expected = f"the folder of a sweep, with {PLAN}"
+            advice = "To begin a sweep, give a scene and --over."
             raise InputError("--out", str(folder), expected, advice) from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
             unchanged = False
         if not unchanged:
-            expected = f"a {PLAN} as this version writes it"
-            raise InputError("--out", str(folder), expected, "Sweep anew.")
+            expected = f"a {PLAN} written by this version and not changed"
+            raise InputError(
+                "--out", str(folder), expected, "Begin the sweep again in another folder."
+            )
         return cls(folder, request, str(document.get("pyarrow")))
 
     def _check_same(self, request: Request) -> None:
@@ -106,15 +108,17 @@ class Store:
         keys = sorted(asked.keys() - {"identity"})  # the identity has versions, compared below
         differing = [key for key in keys if json.dumps(stored.get(key)) != json.dumps(asked[key])]
         if differing:
-            expected = f"the sweep that is there, which differs in {', '.join(differing)}"
-            raise InputError("--out", str(self.folder), expected, "Take another folder.")
+            expected = (
+                f"the same sweep as the one in the folder, which differs in {', '.join(differing)}"
+            )
+            raise InputError("--out", str(self.folder), expected, "Choose another folder.")
         versions = {
             request.identity: self.request.identity,
             f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}",
         }
         for got, expected in versions.items():
             if got != expected:
-                advice = "Install the versions that the sweep was begun with, or begin it anew in another folder."
+                advice = "Install the versions with which the sweep began, or begin it again in another folder."
                 raise InputError("--out", got, f"{expected}, as in {self.folder / PLAN}", advice)
 
     @property
@@ -194,10 +198,8 @@ class Store:
         try:
             return arrays([self.path(part, kind) for part in chosen], names)
         except OSError as error:
-            advice = f"{error.strerror or error}. Go on with `foucault sweep --out {self.folder}`."
-            raise InputError(
-                "sweep", str(self.folder), "parts as they were written", advice
-            ) from None
+            advice = f"{error.strerror or error}. Resume with `foucault sweep --out {self.folder}`."
+            raise InputError("sweep", str(self.folder), "parts that can be read", advice) from None
 
 
 def _check_empty(folder: Path) -> None:
@@ -205,7 +207,7 @@ def _check_empty(folder: Path) -> None:
     if not folder.exists():
         return
     if not folder.is_dir() or any(_is_foreign(path) for path in folder.iterdir()):
-        raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
+        raise InputError("--out", str(folder), "a new or empty folder, or the folder of this sweep")
 
 
 def _is_foreign(path: Path) -> bool:

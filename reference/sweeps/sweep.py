@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..engines import AUTO
-from ..errors import InputError, check_whole, checked_path
+from ..errors import NOTHING, InputError, check_whole, checked_path
 from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
 from ..system.imports import needed
 from ..system.workers import usable_cores
@@ -137,8 +137,8 @@ def _check_memory(count: int) -> None:
         InputError: there are too many rows.
     """
     if count > _MOST_IN_MEMORY:
-        expected = f"a folder, for more than {_MOST_IN_MEMORY:,} rows"
-        raise InputError("--out", "nothing", expected, "Give --out DIR.")
+        expected = f"a folder, because there are more than {_MOST_IN_MEMORY:,} rows"
+        raise InputError("--out", NOTHING, expected, "Give --out DIR.")
 
 
 def load_sweep(folder: str | Path) -> Swept:
@@ -150,8 +150,9 @@ def load_sweep(folder: str | Path) -> Swept:
     store = Store.opened(checked_path("folder", folder, "the folder of a sweep"))
     count = len(store.missing())
     if count:
-        advice = f"{count} of {store.request.parts} are missing or damaged. Go on with `foucault sweep --out {folder}`."
-        raise InputError("sweep", str(folder), "a sweep whose parts are all there", advice)
+        missing = f"{count} of {store.request.parts} parts are missing or damaged."
+        advice = f"{missing} Resume with `foucault sweep --out {folder}`."
+        raise InputError("sweep", str(folder), "a complete sweep", advice)
     return Swept(store.request, store)
 
 

@@ -129,7 +129,9 @@ def _say(why: str) -> None:
     """Say once, in this process and its children, why the cache cannot be used."""
     if not os.environ.get(_PRINTED):
         os.environ[_PRINTED] = "1"
-        print(f"foucault: the cache is not used, which costs time only: {why}.", file=sys.stderr)
+        print(
+            f"foucault: running without the cache, which only takes longer: {why}.", file=sys.stderr
+        )
 
 
 @functools.cache

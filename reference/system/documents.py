@@ -36,7 +36,7 @@ def open_at_once(path: Path) -> BinaryIO:
     try:
         return open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK))
     except ValueError as error:
-        raise OSError(errno.EINVAL, f"No file has this path, {error}") from None
+        raise OSError(errno.EINVAL, f"This cannot be the path of a file: {error}") from None
 
 
 def toml_document(path: Path, field: str) -> dict[str, Any]:
@@ -56,7 +56,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
         text = data.decode("utf-8-sig")  # some editors write a byte order mark
         if _DEEP_KEY.search(text):
             raise InputError(
-                field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words"
+                field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} parts"
             )
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -76,7 +76,7 @@ def json_document(path: Path, field: str) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise InputError(field, str(path), "a JSON document", _reason(error)) from None
     if not isinstance(document, dict):
-        raise InputError(field, str(path), "a JSON document of keys and values")
+        raise InputError(field, str(path), "a JSON object of keys and values")
     return document
 
 

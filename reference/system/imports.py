@@ -105,7 +105,9 @@ def needed(module: str, extra: str, field: str, purpose: str, instead: str = "")
         InputError: it is not.
     """
     if missing([module]):
-        raise NotInstalledError(field, purpose, _PACKAGES.get(module, module), extra, instead)
+        package = _PACKAGES.get(module, module)
+        requirement = f"'foucault-reference[{extra}]'"
+        raise NotInstalledError(field, purpose, package, requirement, instead)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:
@@ -150,6 +152,8 @@ class OptionalEngine:
         without = "The engine heyoka does without"
         variable = switched_off(self.requires)
         if variable:
-            raise InputError("--engine", self.name, f"{variable} unset", f"Unset it. {without}.")
+            raise InputError(
+                "--engine", self.name, f"{variable} not to be set", f"Unset it. {without}."
+            )
         for module in self.requires:
             needed(module, self.extra, "--engine", f"the engine {self.name}", f". {without}")

@@ -95,7 +95,7 @@ class Worker:
             item = self._connection.recv() if in_time else None
         except (EOFError, OSError, pickle.UnpicklingError):
             raise IntegrationError(
-                "a child process of the solver ended without a result."
+                "a child process of the solver ended before it returned a result."
             ) from None
         if not in_time:
             raise TimeoutError

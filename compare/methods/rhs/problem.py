@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
-from reference.errors import BeyondDoublesError
+from reference.errors import BeyondDoublesError, Described
 from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
@@ -192,7 +192,10 @@ class Problem:
             state = start.state(model)
         except ValueError as error:
             raise InputError(
-                "formulation", formulation, "one that holds at the release", f"{error}."
+                "formulation",
+                formulation,
+                "a formulation that is valid at the release",
+                f"{error}.",
             ) from None
         if times is None:
             times = [float(t) for t in scene.exact.grid]
@@ -268,7 +271,7 @@ def slopes(y, k, j):
 def _increasing(times: npt.ArrayLike) -> Array:
     t = np.array(times, dtype=np.float64).ravel()
     if len(t) < 2 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
-        given = t.tolist() if len(t) < 9 else "an array"
+        given = t.tolist() if len(t) < 9 else Described("an array")
         raise InputError("times", given, "at least two finite times, increasing from 0")
     return t
 

@@ -152,7 +152,7 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
     if not paths:
         advice = "`foucault generate --all` makes those that ship."
         raise InputError(
-            "--data", str(folder), "a folder of golden datasets, each a folder in it", advice
+            "--data", str(folder), "a folder that contains the folders of golden datasets", advice
         )
     readings: dict[str, dict[str, Golden]] = {}
     for path in paths:
@@ -185,7 +185,7 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     """
     if folder is not None and not folder.is_dir():
         advice = "`foucault study … --out DIR` writes one."
-        raise InputError("--studies", str(folder), "a folder of results", advice)
+        raise InputError("--studies", str(folder), "a folder of study results", advice)
     results: defaultdict[str, StudyResults] = defaultdict(StudyResults)
     paths = [] if folder is None else sorted(folder.glob("*.json"))
     for path in paths:

@@ -197,13 +197,13 @@ def test_commands_are_compared_too(foucault, rows):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("[]", "a JSON document of keys and values"),
-        ("{}", "a document of `foucault score --json`"),
-        ('{"scene": "mine"}', "a document of `foucault score --json`"),
-        ('{"rows": [7]}', "a document of `foucault score --json`"),
-        ("other", "Judge both by the same inputs"),
-        ("changed", "Judge both by the same inputs"),
-        ("words", "a document of `foucault score --json`"),
+        ("[]", "a JSON object of keys and values"),
+        ("{}", "a document that `foucault score --json` wrote"),
+        ('{"scene": "mine"}', "a document that `foucault score --json` wrote"),
+        ('{"rows": [7]}', "a document that `foucault score --json` wrote"),
+        ("other", "Score both with the same inputs"),
+        ("changed", "Score both with the same inputs"),
+        ("words", "a document that `foucault score --json` wrote"),
     ],
 )
 def test_what_is_no_baseline_is_refused(foucault, rows, tmp_path, text, said):

@@ -41,19 +41,19 @@ REFUSED = [
     (
         (*STUDY, "--settings", "0.1", "--run", "./p"),
         "--settings",
-        "with a --run that has no {setting}",
+        "without {setting} in --run",
     ),
     ((*STUDY, "--name", "mine"), "--name", "without --run"),
     (
         (*STUDY, "--run", "./p", "--run", "./q", "--name", "p"),
         "--name",
-        "one name for each --run, so 2",
+        "2 names, one for each --run",
     ),
-    ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name that a method does not have"),
+    ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name other than that of a method"),
     (
         (*STUDY, "--run", "./p 1", "--run", "./p 2"),
         "--name",
-        "a name that another --run does not have",
+        "a name other than that of another --run",
     ),
     ((*STUDY, "--run", "./p", "--name", "x" * 25), "--name", "1 to 24 printable characters"),
     ((*STUDY, "--run", "./p {nonsense}"), "--run", "{x0}"),
@@ -135,7 +135,7 @@ def test_what_would_have_no_effect_is_refused(
     monkeypatch.chdir(tmp_path)
     status, out, err = foucault(*words)
     assert (status, out) == (2, "")
-    assert err.startswith(f"foucault: {field}: got ")
+    assert err.startswith(f"foucault: {field}: ")
     assert reason in err
     assert len(err) < 500
     assert list(tmp_path.iterdir()) == []

@@ -187,7 +187,7 @@ WORDS = {
     "transits of a scene that asks for none": (
         lambda m: (m["scene"]["run"].update(transits="false"), m.update(transits="not asked for")),
         "counts.transits = 36 does not follow from the scene and the tables, which give 0"),
-    "a wrong count": (lambda m: m["counts"].update(transits=35), "36 rows, the manifest counts 35"),
+    "a wrong count": (lambda m: m["counts"].update(transits=35), "36 rows, but the manifest says 35"),
     "intervals that overlap": (lambda m: possible(m, (10, 20), (19, 30)), "must be intervals in order"),
     "an interval that ends before it begins": (lambda m: possible(m, (20, 10)), "must be intervals in order"),
     "an interval without length": (lambda m: possible(m, (20, 20)), "must be intervals in order"),

@@ -195,7 +195,7 @@ def test_commands_that_read_doubles_name_the_field_too(foucault, tmp_path, comma
 
 
 def test_a_missing_id_is_asked_for():
-    with pytest.raises(InputError, match="id: got 'nothing'"):
+    with pytest.raises(InputError, match="id: got nothing"):
         parse_scene({"release": {"x": "0", "y": "0"}})
 
 

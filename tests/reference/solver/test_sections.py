@@ -176,7 +176,7 @@ def test_all_levels_find_the_same_passages():
 )
 def test_a_wrong_section_is_refused_with_what_was_expected(words):
     with pytest.raises(
-        InputError, match=r"run\.sections.*(highest, lowest, gate AZIMUTH|each section once)"
+        InputError, match=r"run\.sections.*(highest, lowest, gate AZIMUTH|different sections)"
     ):
         reference.solve("paris", sections=words)
 

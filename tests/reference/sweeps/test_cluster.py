@@ -222,7 +222,7 @@ def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_o
     assert not list(scratch.iterdir())
     with (
         dask.config.set(encrypted),
-        pytest.raises(InputError, match="processes that dask can start here"),
+        pytest.raises(InputError, match="dask can start processes"),
         scheduler_at("local:1"),
     ):
         pass

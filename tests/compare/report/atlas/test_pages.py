@@ -189,7 +189,7 @@ def test_the_command_to_score_says_what_differs_from_the_scene(readings):
     [
         (("--data", "nowhere"), "a folder of golden datasets"),
         (("--data", "SOME", "--studies", "."), "a study as `foucault study` writes it"),
-        (("--data", "SOME", "--studies", "nowhere"), "a folder of results"),
+        (("--data", "SOME", "--studies", "nowhere"), "a folder of study results"),
         (("--out", "mine"), "a new folder, or one that an earlier run wrote"),
     ],
 )
