@@ -1,4 +1,4 @@
-"""A candidate: a trajectory to be judged, held as checked NumPy arrays wherever it comes from."""
+"""A candidate: a trajectory to be judged, as checked NumPy arrays, whatever its source."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Candidate:
 
     @property
     def positions(self) -> bool:
-        """True if it has positions; False for one that has transits alone."""
+        """True if it has positions; False if it has only transits."""
         return "x" in self.columns
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Times that a clock shows: hours:minutes:seconds, or a date and these; a moment that counts from 1970."""
+"""Times shown by a clock: hours:minutes:seconds, with or without a date, or seconds since 1970."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HOW = "Write seconds since the release, or hours:minutes:seconds."
 
 
 def seconds_of(text: str, where: str) -> Fraction:
-    """Return what a clock shows in s: since midnight, or with a date since 1970.
+    """Return the time on a clock in s: since midnight, or, with a date, since 1970.
 
     Raises:
         InputError: it is no clock's text, or two numbers alone, which may be hours and minutes.
@@ -59,7 +59,7 @@ def _of_day(hours: str, minutes: str, seconds: str) -> Fraction:
 
 
 def decimal(seconds: Fraction) -> str:
-    """Return a number of seconds, of which a decimal is exact, as that decimal."""
+    """Return a number of seconds as an exact decimal; it must have one."""
     digits = 0
     while (seconds * 10**digits).denominator != 1:
         digits += 1
@@ -71,7 +71,7 @@ def decimal(seconds: Fraction) -> str:
 
 
 def shown(seconds: float) -> str:
-    """Return what a clock showed, for people: with the date if it counts from 1970."""
+    """Return the time on a clock for people, with the date if it counts from 1970."""
     text = f"{seconds:.10g} s" if abs(seconds) < 1e9 else f"{seconds:.14g} s"
     if not UNIX[0] <= seconds < UNIX[1]:
         return text

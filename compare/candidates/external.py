@@ -83,7 +83,7 @@ class Timing:
 
 
 class OutOfTimeError(InputError):
-    """A program took longer than allowed, and was ended."""
+    """A program took longer than allowed and was stopped."""
 
 
 class CrashedError(InputError):

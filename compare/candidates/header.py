@@ -69,7 +69,7 @@ class Header:
         return False
 
     def add(self, number: int, text: str, comment: bool) -> None:
-        """Take a line that is no row.
+        """Add a line that is not a row.
 
         Raises:
             InputError: there are too many before the first row.
@@ -85,7 +85,7 @@ class Header:
             del self.lines[0]
 
     def layout(self, row: str, separator: str, number: int) -> tuple[Layout, int]:
-        """Return which column stands where, and how many columns there are, from the first row and its line.
+        """Return the layout of the columns and their number, from the first row and its line number.
 
         Raises:
             InputError: no line names the columns, or one does but not all that are needed, and the

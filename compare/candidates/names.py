@@ -1,4 +1,4 @@
-"""Which column stands where: the words of a header, or of `--columns`, as programs use them; units in SI.
+"""The order of columns: the words of a header or of `--columns`, as programs use them; units in SI.
 
 `pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t;
 `vx`, `xdot`, `dx/dt` and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other
@@ -74,7 +74,7 @@ UNNAMED = {
 
 @dataclass(frozen=True)
 class Meaning:
-    """Say which column a word of a header names, and in which unit.
+    """The column that a word of a header stands for, and its unit.
 
     Attributes:
         column: t, x, y, z, vx, vy or vz.
@@ -91,7 +91,7 @@ class Meaning:
 
 
 def meaning(word: str, units: dict[str, str]) -> Meaning | None:
-    """Return what a word of a header means; None for a column that is not read.
+    """Return the column and unit that a word of a header stands for; None for a column that is not read.
 
     Args:
         word: as printed.
@@ -242,7 +242,7 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Naming:
-    """Hold the names and units that a user gives to the columns of a file.
+    """The names and units that a user gives for the columns of a file.
 
     Attributes:
         columns: their names in order, as in a header, `-` for one that is not read; empty if the
@@ -260,7 +260,7 @@ class Naming:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where each column stands.
+    """The position of each column.
 
     Attributes:
         places: index of each column that is read, in the order t, x, y, z, vx, vy, vz.
@@ -424,7 +424,7 @@ def units_of(words: Sequence[str]) -> list[str] | None:
 
 
 def given(count: int, naming: Naming) -> Layout:
-    """Return the layout of a file whose columns the user names.
+    """Return the layout of a file whose columns the user has named.
 
     Raises:
         InputError: there are more or fewer names, one is not known, or one that is needed is
@@ -461,6 +461,6 @@ def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | Non
 
 
 def advice(needed: Sequence[str]) -> str:
-    """Return what a header has to name."""
+    """Return the advice which columns a header has to name."""
     more = f" and optionally {', '.join(COLUMNS[2:])}" if len(needed) > 1 else ""
     return f"Columns are {', '.join(needed)}{more}, named in the first line or by --columns."

@@ -99,7 +99,7 @@ def read(
 
 @contextmanager
 def named(field: str) -> Iterator[None]:
-    """Name a field in what is wrong with its file or its command: a baseline is read, and run, as a candidate is."""
+    """Name the right field in errors of a file or a command, such as a baseline, which is read like a candidate."""
     try:
         yield
     except InputError as error:

@@ -387,7 +387,7 @@ def _check_values(options: ScoreOptions) -> None:
     """Refuse values that are out of range, and a picture that cannot be written."""
     covers = options.covers
     if covers is not None and not 0 < covers <= 1:
-        expected = "a share of the scene's span, above 0 and at most 1"
+        expected = "a share of the scene's span, above 0 and up to 1"
         raise InputError("--covers", f"{covers:g}", expected)
 
     check_positive("--timeout", options.timeout)

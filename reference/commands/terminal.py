@@ -15,7 +15,7 @@ from ..scenes.shipped import scene_ids
 
 
 def completion(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
-    """Return what a shell asks for the names that begin as the word that is being typed."""
+    """Return the completion function of a shell, which lists the names that begin with the typed text."""
     return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
 
 
@@ -36,7 +36,7 @@ def option(
 def scene_argument(
     text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE"
 ) -> Any:
-    """Return the argument that is a scene, by its help and its word; a shell completes the ids."""
+    """Return the argument for a scene, with its help and its name; a shell completes the ids."""
     return typer.Argument(metavar=value, help=text, autocompletion=completion(scene_ids))
 
 
@@ -86,7 +86,7 @@ def emit(document: dict[str, Any]) -> None:
 
 @contextmanager
 def stoppable(outcome: str) -> Iterator[None]:
-    """Have Ctrl-C end the command with one line: what became of its work, or how to go on.
+    """Make Ctrl-C end the command with one line that says what became of its work, or how to resume.
 
     Raises:
         Stopped: it was interrupted.
@@ -98,7 +98,7 @@ def stoppable(outcome: str) -> Iterator[None]:
 
 
 def chosen(option: str, word: str, names: Iterable[str]) -> str:
-    """Return the word that was given to an option of few choices.
+    """Return the word given to an option with a few choices.
 
     Raises:
         InputError: it is none of them.
@@ -115,7 +115,7 @@ def replacements(
     unused: Mapping[str, str] | None = None,
     note: Callable[[str], None] | None = None,
 ) -> list[str]:
-    """Return the replacements of a scene's fields, by `--set` and by options of their own.
+    """Return the replacements of a scene's fields, from `--set` and from options such as `--t-end`.
 
     Args:
         assignments: those of `--set`.
@@ -135,7 +135,7 @@ def replacements(
         value = f"{field}={text}"
         same_end = option == "--t-end" and values.get(field) == value
         if field in values and not same_end:
-            expected = f"no second value beside --set {values[field]}"
+            expected = f"no value together with --set {values[field]}"
             raise InputError(option, text, expected, "Keep one of the two.")
         values[field] = value
     return list(values.values())
@@ -166,7 +166,7 @@ def _assigned(
 
 
 def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] | None:
-    """Return the widths by `--uncertain` and those of the scene, by name; None if all are exact.
+    """Return the widths from `--uncertain` and from the scene, by name; None if all inputs are exact.
 
     Raises:
         InputError: a word is not KEY=±WIDTH, or one key has two widths.
@@ -190,7 +190,7 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:
-    """Refuse options that would have no effect, such as those given "without --run".
+    """Refuse options that have no effect, such as those given "without --run".
 
     Raises:
         InputError: one of the options was given: its value is neither None, nor False, nor empty.
@@ -210,7 +210,7 @@ def _as_typed(value: object) -> str:
 
 
 def check_workers(workers: int | None, cluster: str | None) -> None:
-    """Refuse a wrong number of workers, or one beside a cluster.
+    """Refuse a wrong number of workers, or any number together with a cluster.
 
     Raises:
         InputError: one of the two.

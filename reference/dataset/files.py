@@ -1,4 +1,4 @@
-"""The files of a golden dataset, read once: every byte hashed, every table well formed."""
+"""The files of a golden dataset, read once: the hash of each and the form of each table are checked."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ LINE_ENDS = (
 
 @dataclass(frozen=True)
 class DatasetFiles:
-    """The files of a dataset, read once: each has the hash of its record and is well formed.
+    """The files of a dataset, read once: each has the recorded hash and the right form.
 
     Attributes:
         folder: their folder.

@@ -31,7 +31,7 @@ _Hexfloat = Annotated[str, Field(pattern=r"^0x[01]\.[0-9a-f]{1,13}p[+-][0-9]{1,4
 
 
 class FunctionRecord(ManifestPart):
-    """`function.json`: what the doubles of `function.f64` are, and how far their values may be from the truth."""
+    """`function.json`: the meaning of the doubles in `function.f64`, and bounds on the function's errors."""
 
     schema_version: Literal[3]  # manifest.FORMAT
     id: Name
@@ -46,7 +46,7 @@ class FunctionRecord(ManifestPart):
 
     @staticmethod
     def following(manifest: Manifest) -> dict[str, Any]:
-        """Return what follows from the manifest of the dataset."""
+        """Return the fields that follow from the manifest of the dataset."""
         columns = {"t", *STATE}
         return {
             "schema_version": manifest.schema_version,
@@ -58,13 +58,13 @@ class FunctionRecord(ManifestPart):
 
     @classmethod
     def of(cls, proved: Any, manifest: Manifest) -> FunctionRecord:
-        """Describe a function as it was proved, in the dataset of a manifest."""
+        """Return the description of a proved function for the dataset of a manifest."""
         bounds = {name: proved.bounds[name] for name in STATE}
         return cls.model_validate({**cls.following(manifest), "bounds": bounds, **proved.facts})
 
 
 def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunction]:
-    """Return the description of a function, and what evaluates it.
+    """Return the description of a golden function, and the function itself.
 
     Args:
         text: of `function.json`.

@@ -1,4 +1,4 @@
-"""A golden dataset as read: its columns as doubles, texts or fractions, and states between."""
+"""A golden dataset as read: its columns as doubles, texts or fractions, and states at times between its rows."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two dou
 
 @dataclass(frozen=True, repr=False)
 class PrintedTable(Framed):
-    """A CSV table of a dataset: columns of decimals, by name, and the largest bound of each."""
+    """A CSV table of a dataset: columns of decimals by name, and the largest error bound of each."""
 
     _sheet: Sheet
     _bounds: Mapping[str, str]
@@ -63,7 +63,7 @@ class PrintedTable(Framed):
         return [Fraction(Decimal(text)) for text in self.decimals(name)]
 
     def bound(self, name: str) -> list[Fraction]:
-        """Return bounds on the errors of a column's printed values.
+        """Return proven bounds on the errors of a column's printed values, one for each row.
 
         A transit time has a bound of its own; for other columns it is the largest of all rows.
         """
@@ -112,7 +112,7 @@ class Golden(GridColumns):
     sections: Mapping[str, PrintedTable] = field(default_factory=dict)
 
     def at(self, t: npt.ArrayLike) -> States:
-        """Return the states at times in s, of any shape and in any order, with their bounds.
+        """Return the states at times in s (any shape, any order), with bounds on their errors.
 
         They come from the golden function, or the scene is solved again (needs heyoka, takes
         longer) and its numbers are rounded to doubles.
@@ -146,7 +146,7 @@ class Golden(GridColumns):
 
     @property
     def directions(self) -> list[int]:
-        """+1 where xdot goes from - to +, per transit."""
+        """For each transit, +1 if xdot goes from - to +, and -1 otherwise."""
         return [int(text) for text in self.transits.decimals("direction")]
 
     def decimals(self, column: str) -> list[str]:
@@ -232,7 +232,7 @@ def _sections(files: DatasetFiles) -> _Sections:
 
 @dataclass(frozen=True)
 class Dense:
-    """A trajectory at chosen times, finer than binary64.
+    """A trajectory at chosen times, more accurate than binary64.
 
     Attributes:
         t: times in s, shape (rows,), increasing, without repeats.
@@ -250,7 +250,7 @@ class Dense:
 
     @classmethod
     def of(cls, times: Array, table: Any, rows: Any) -> Dense:
-        """Build from some rows of a table that has bounds."""
+        """Return the trajectory in some rows of a table with bounds."""
         doubles = []
         remainders = []
         bounds = []
@@ -279,7 +279,7 @@ def _as_pair(value: Fraction) -> tuple[float, float]:
 
 
 def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
-    """Evaluate the solution of a golden dataset at any times that it spans.
+    """Return the states of a golden dataset's solution at any times in its span.
 
     Args:
         golden: the dataset: its rows are taken where all times are those of its grid.

@@ -36,7 +36,7 @@ _WIDER = ("possible", "sections")  # intervals that may be wider than those that
 
 
 def ranges_id(ranges: Ranges) -> str:
-    """Return the id: that of the scene's dataset, with the half-widths.
+    """Return the id of ranges: that of the scene's dataset, with the half-widths of the inputs.
 
     Example: paris+-pendulum.length=0.001.
     """
@@ -45,7 +45,7 @@ def ranges_id(ranges: Ranges) -> str:
 
 
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
-    """Write ranges: `ranges.json`, with scene, box and proof, and the tables; whole or not at all.
+    """Write ranges, completely or not at all: `ranges.json` (scene, box and proof) and the tables.
 
     Args:
         ranges: what `prove_ranges` returned.
@@ -70,7 +70,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
 
 
 def load_ranges(name: str | Path) -> Ranges:
-    """Read ranges by id or path, with intervals as printed and no proof; check seal and hashes.
+    """Read ranges by id or path, check seal and hashes, and return the intervals as printed.
 
     Raises:
         InputError: there are none.
@@ -81,7 +81,7 @@ def load_ranges(name: str | Path) -> Ranges:
 
 
 def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = False) -> list[str]:
-    """Prove ranges again, and have trusted code compare their files with that.
+    """Prove ranges again, and let trusted code compare their files with the new proof.
 
     Args:
         folder: their folder.
@@ -249,7 +249,7 @@ def _other_facts(texts: dict[str, str], again: Ranges) -> Iterator[str]:
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
-    """Return the ends of the period's interval as text, by transits.csv; None if it is open."""
+    """Return the ends of the period's interval as text, from transits.csv; None if it has no end."""
     period = with_fields(ranges, proof=None).period
     return period and list(ends(*period))
 

@@ -1,4 +1,4 @@
-"""Write a dataset: its files are checked elsewhere and put in place together, or not at all."""
+"""Write a dataset: its files are checked in a temporary folder, then put in place together or not at all."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def write(
 
 
 def filled(work: Path, texts: Mapping[str, Content]) -> Path:
-    """Return a new folder in `work` with these files, written through to the disk."""
+    """Return a new folder in `work` with these files, flushed to disk."""
     new = work / "new"
     new.mkdir()
     for file, text in texts.items():
@@ -145,7 +145,7 @@ def _content(path: Path) -> Content:
 
 
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
-    """Return what `generate --json` prints on a dataset, with measurements that are in no file."""
+    """Return what `generate --json` prints about a dataset, including measurements that no file contains."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=Fraction)
     return {

@@ -1,4 +1,4 @@
-"""Run a proof: choose method and bits, take an approximant's steps, try again with more bits.
+"""Run a proof: choose method and bits, take an approximant's steps, and try again with more bits if it fails.
 
 Untrusted: no bound is computed here. Every step goes to the trusted `Course`, whose results are
 passed on as they are.
@@ -373,7 +373,7 @@ def plan_for(
 
 
 def magnitude(ratio: Fraction) -> int:
-    """Return the logarithm to base 2, about."""
+    """Return an estimate of the logarithm to base 2."""
     return ratio.numerator.bit_length() - ratio.denominator.bit_length()
 
 

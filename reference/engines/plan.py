@@ -1,4 +1,4 @@
-"""An integrator: its input, `Plan`, its output, `Run`, and its interface, `Engine`.
+"""The interface of an integrator: `Engine`, with its input, `Plan`, and its output, `Run`.
 
 Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py`
 has the functions `run(plan, report, pace)` and `taylor_steps(plan, coefficient_bits)`.
@@ -37,7 +37,7 @@ MOST_TURN = 1.75
 
 @dataclass(frozen=True)
 class Plan:
-    """A run to be done.
+    """The specification of a run.
 
     Attributes:
         inputs: the exact inputs of a scene.

@@ -1,4 +1,4 @@
-"""Trajectories as binary64 from a single run that nothing confirms.
+"""Trajectories as binary64 from a single, unconfirmed run.
 
 They are those of the model, or of any autonomous system.
 

@@ -1,4 +1,4 @@
-"""A solved scene: tables of numbers with bounds, their decimals, and the runs or proof behind them.
+"""A solved scene: tables of numbers with error bounds, their decimals, and the runs or the proof that support them.
 
 The decimals follow from the bounds, and so does whether a proof decides each digit; `Table` rounds.
 """
@@ -155,7 +155,7 @@ class Solution(GridColumns, WithZeros[Table]):
 
     @property
     def cpu_s(self) -> float:
-        """CPU seconds of all runs and proofs, imports and compilation apart."""
+        """CPU seconds of all runs and proofs, without imports and compilation."""
         return self.pilot_s + self.run.cpu_s + self.check_s + self.discarded_s
 
     @property
@@ -210,7 +210,7 @@ class Solution(GridColumns, WithZeros[Table]):
 
 
 def grid_decimals(solution: Solution) -> dict[str, int]:
-    """Return the digits after the point of each column of the grid.
+    """Return the number of decimals of each column of the grid.
 
     Its largest number gets the significant digits asked for.
     """
@@ -219,7 +219,7 @@ def grid_decimals(solution: Solution) -> dict[str, int]:
 
 
 def decimals_of_zeros(solution: Solution, word: str) -> dict[str, int]:
-    """Return the digits after the point of each column of a word's zeros; empty without zeros."""
+    """Return the number of decimals of each column of a section's zeros; empty if there are no zeros."""
     if word not in solution.zeros:
         return {}
     tables = {other: zeros.table for other, zeros in solution.zeros.items()}
@@ -227,7 +227,7 @@ def decimals_of_zeros(solution: Solution, word: str) -> dict[str, int]:
 
 
 def exact_decimals(values: tuple[Fraction, ...]) -> int:
-    """Return the digits after the point that print terminating decimals exactly."""
+    """Return the number of decimals with which terminating decimals are printed exactly."""
     digits = 0
     for value in values:
         while (value * 10**digits).denominator != 1:
@@ -246,7 +246,7 @@ def _tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
 def separated(
     zeros: Sequence[Any], word: str, end: Fraction, table: Callable[[tuple[str, ...], Any], T]
 ) -> Zeros[T]:
-    """Return what a proof found up to `end`: single zeros, as a table, and undecided ones.
+    """Return the zeros that a proof found up to `end`: single ones as a table, and undecided ones.
 
     Zeros lie in (0, end], to which the ball of an undecided cluster is cut.
     """
@@ -276,7 +276,7 @@ def check_decided(solution: Solution) -> None:
 
 
 class UndecidedRounding(UnreachableError):
-    """A proven interval holds a number halfway between two decimals: a finer enclosure is needed.
+    """A proven interval contains a number halfway between two decimals: a finer enclosure is needed.
 
     Attributes:
         width: half-width of the widest such interval, in units of the last printed digit.

@@ -116,7 +116,7 @@ def _solved(request: SolveRequest) -> Solution:
 
 
 def solve_at(scene: Scene, times: Collection[Fraction], digits: int) -> Solution:
-    """Solve a scene without transits, at times in s in place of its grid, at self_consistent."""
+    """Solve a scene at given times in s instead of its grid times, at level self_consistent, without transits."""
     settings = [f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"]
     scene = scene.with_values(settings)
     moments = {Fraction(0), *times}

@@ -98,7 +98,7 @@ class Swing:
         return Ends(low, high)
 
     def near(self, other: Swing | None, far: Fraction) -> Swing:
-        """Return this swing, its precession cut to what is at most `far` from another's."""
+        """Return this swing with its precession cut to the values that differ from another's by at most `far`."""
         if self.precession is None or other is None or other.precession is None:
             return self
         low = max(self.precession.low, other.precession.low - far)
@@ -177,7 +177,7 @@ def _longest_gap(points: Sequence[_Point]) -> Fraction:
 
 
 def left_out(reason: str, still: bool) -> dict[str, str]:
-    """Return why a swing has no precession or no full turn, by their names in a document.
+    """Return the reasons why a swing has no precession or no full turn, by their names in a document.
 
     Args:
         reason: why there is no precession, "" if there is one.
@@ -189,7 +189,7 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
 
 
 def offset(start: Start, far: Any) -> float:
-    """Return how far a swing's highest points may lie from its ends, in radians of azimuth.
+    """Return a bound on the distance of a swing's highest points from its ends, in radians of azimuth.
 
     Above 1 they may lie anywhere.
 

@@ -112,14 +112,14 @@ def _check_release(scene: Scene, widths: Mapping[str, Fraction]) -> None:
 
 
 def decimal(value: Fraction) -> str:
-    """Return a number with its decimals, 20 at most."""
+    """Return a number as a decimal with at most 20 digits after the point."""
     terminates = (value * 10**_MOST_DECIMALS).denominator == 1
     places = exact_decimals((value,)) if terminates else _MOST_DECIMALS
     return fixed_decimal(value, places)
 
 
 def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
-    """Return widths as decimals, with all of their digits."""
+    """Return widths as decimals with all of their digits."""
     return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
 
 
@@ -145,7 +145,7 @@ def prove_ranges(
     derivatives: bool = False,
     report: Report | None = None,
 ) -> Ranges:
-    """Prove intervals that hold for every pendulum whose inputs lie in their ranges.
+    """Prove intervals that are true for every pendulum whose inputs lie in their ranges.
 
     The proof is that of THEOREM.md, sections 11 to 13.
 

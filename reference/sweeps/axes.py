@@ -65,7 +65,7 @@ class AxisTable:
     def restored(
         cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading
     ) -> AxisTable:
-        """Return the table whose `typed` and `stored` were written down."""
+        """Return the table that was written as `typed` and `stored`."""
         from_file = {key: tuple(texts) for key, texts in stored.items()}
         if typed is None:
             return cls(from_file)
@@ -76,7 +76,7 @@ class AxisTable:
 
     @property
     def stored(self) -> dict[str, tuple[str, ...]]:
-        """The values that do not follow from what was typed: those that come from a file."""
+        """The values that come from a file, and so do not follow from what was typed."""
         return {
             key: texts
             for key, texts in self.values.items()
@@ -99,7 +99,7 @@ class AxisTable:
         return {key: texts[place] for key, texts, (place,) in self._placed([row])}
 
     def numbers(self, rows: Any, reading: Reading) -> dict[str, DoubleDouble]:
-        """Return the numbers of rows by field; only where nothing is wrong with them."""
+        """Return the numerical values of rows by field; the rows must be valid."""
         columns = {}
         for key, texts, places in self._placed(rows):
             if key in WORD_FIELDS:
@@ -112,7 +112,7 @@ class AxisTable:
         return columns
 
     def words(self, rows: Any) -> dict[str, list[str]]:
-        """Return the values of rows by field, those that are words."""
+        """Return the values of rows that are words, by field."""
         return {
             key: [texts[place] for place in places]
             for key, texts, places in self._placed(rows)
@@ -120,7 +120,7 @@ class AxisTable:
         }
 
     def wrong(self, rows: Sequence[int], reading: Reading) -> dict[int, str]:
-        """Return, by row of a list, why its first wrong value is wrong by itself.
+        """Return, by row of a list, what is wrong with its first invalid value.
 
         The values of `--over` words were checked when they were read.
         """

@@ -1,4 +1,4 @@
-"""Clusters through dask.distributed, here or on other machines; the only door to dask.
+"""Clusters through dask.distributed, on this machine or others; the only module that uses dask.
 
 dask sends a part again if its worker is lost. A part that was lost as often as dask allows has
 killed its workers.
@@ -83,7 +83,7 @@ class Scheduler:
 
 @contextmanager
 def scheduler_at(address: str) -> Iterator[Scheduler]:
-    """Provide a scheduler whose workers have our versions; end it if it was started here.
+    """Yield a scheduler whose workers have the versions of this process; stop it at the end if it was started here.
 
     Args:
         address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's
@@ -188,7 +188,7 @@ def _settle(future: Future[Any], dask_future: Any) -> None:
 
 @contextmanager
 def on_cluster(request: Request, folder: Path | None, address: str) -> Iterator[Executor]:
-    """Provide the workers of a scheduler for the rows of a sweep.
+    """Yield the workers of a scheduler, for the rows of a sweep.
 
     Args:
         request: the sweep.

@@ -104,7 +104,7 @@ class Settings:
 
     @property
     def promotes(self) -> bool:
-        """Whether every row goes through the solver, by its level or digits."""
+        """Whether every row is solved by the solver, because of the level or the digits."""
         return self.level != "computed" or self.digits is not None
 
     @property
@@ -159,12 +159,12 @@ class Request:
 
     @property
     def promotes(self) -> bool:
-        """Whether every row goes through the solver, by its level or digits."""
+        """Whether every row is solved by the solver, because of the level or the digits."""
         return self.level != "computed" or self.digits is not None
 
     @property
     def solved_by(self) -> str:
-        """The name of what solves the rows: an engine for many at once, or the solver."""
+        """What solves the rows: the name of an engine for many rows, or the solver."""
         return "the solver" if self.promotes else self.engine
 
     @property
@@ -201,7 +201,7 @@ class Request:
 
     @property
     def rows_per_audited(self) -> float:
-        """About how many rows take as long as one row of the audit."""
+        """An estimate of how many rows take as long as one row of the audit."""
         if self.promotes:
             return 1.0
         audited_s = _AUDITED_S + _AUDITED_SWING_S * _swings(self.scene)
@@ -213,7 +213,7 @@ class Request:
         return range(first, min(first + self.rows_per_part, self.table.count))
 
     def part_of(self, row: int) -> int:
-        """Return the part in which a row is."""
+        """Return the part that contains a row."""
         return row // self.rows_per_part
 
     def scene_of(self, row: int) -> Scene:
@@ -227,7 +227,7 @@ class Request:
         return self.scene.with_values(values | {"run.grid_step": t_end})
 
     def document(self) -> dict[str, Any]:
-        """Return the request as JSON, all that decides the digits."""
+        """Return the request as a JSON document of everything that the digits depend on."""
         return {
             "schema": _SCHEMA,
             "scene": self.scene.model_dump(exclude_none=True),

@@ -54,7 +54,7 @@ class EstimatedSwing:
 
     @property
     def may_stand_still(self) -> bool:
-        """Whether the precession is no larger than its error."""
+        """Whether the precession is at most as large as its error."""
         rate = self.precession_deg_per_h
         return rate is not None and not abs(rate) > self.precession_error_deg_per_h
 

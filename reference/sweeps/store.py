@@ -49,7 +49,7 @@ class Store:
 
     @classmethod
     def begun(cls, folder: Path, request: Request) -> Store:
-        """Begin a folder, or go on with that of the same sweep.
+        """Create the folder of a sweep, or open it to resume the same sweep.
 
         Raises:
             InputError: it holds another sweep, or something else, or other versions would write
@@ -131,7 +131,7 @@ class Store:
         return self.folder / kind / f"part-{part:08d}.parquet"
 
     def missing(self) -> list[int]:
-        """Return the parts that do not exist yet, were damaged, or have another part's seal."""
+        """Return the parts that are missing or damaged, or have the seal of another part."""
         return [
             part
             for part in range(self.request.parts)
@@ -152,7 +152,7 @@ class Store:
         return f"{kind} {part} of {self.request.hash}"
 
     def save(self, part: int, solved: Part) -> None:
-        """Write a part, whole or not at all.
+        """Write a part completely or not at all.
 
         Raises:
             InputError: it cannot be written.
@@ -176,7 +176,7 @@ class Store:
         _write(self.folder / SUMS, sums_text(files).encode())
 
     def foreign(self) -> list[str]:
-        """Return the files beside the parts that are not the sweep's, by their paths in its folder.
+        """Return the files in the folder that do not belong to the sweep, by their paths in it.
 
         Names that begin with a dot are left out, as programs that read Parquet do.
         """
@@ -189,7 +189,7 @@ class Store:
     def read(
         self, names: list[str] | None = None, kind: str = _ROWS, parts: Iterable[int] | None = None
     ) -> dict[str, Any]:
-        """Return columns of parts as arrays, one below the other: all if none are named.
+        """Return columns of the concatenated parts as arrays; all columns if none are named.
 
         Raises:
             InputError: a part was damaged or lost since its seal was checked.

@@ -164,7 +164,7 @@ def run(
     report: Report = lambda _: None,
     report_audit: Report = lambda _: None,
 ) -> Swept:
-    """Solve the parts that are not done yet, and audit; arguments as those of `sweep`.
+    """Solve the parts that are missing, then audit; arguments as those of `sweep`.
 
     `report_audit` is called with the number of rows that were audited.
     """

@@ -1,4 +1,4 @@
-"""Read files that a stranger may have written: regular, of bounded size, TOML and JSON not deep."""
+"""Read files from untrusted sources: only regular files of bounded size, and TOML and JSON of bounded depth."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
 
 
 def texts_of(module: str) -> dict[str, Any]:
-    """Return the TOML file of a module's name beside it; the module is given by its `__file__`."""
+    """Return the TOML document beside a module, of the same name; the module is given by its `__file__`."""
     return tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
@@ -81,7 +81,7 @@ def json_document(path: Path, field: str) -> dict[str, Any]:
 
 
 def json_lines(path: Path, field: str) -> Iterator[dict[str, Any]]:
-    """Yield the dictionaries of a file of JSON lines, without other lines, such as one cut short.
+    """Yield the dictionaries in a file of JSON lines; other lines, such as a truncated one, are skipped.
 
     Arguments and errors are those of `toml_document`.
     """

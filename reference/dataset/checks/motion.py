@@ -64,7 +64,7 @@ class _Comparison:
 
 
 def problems(files: DatasetFiles, report: Progress | None = None) -> tuple[list[str], list[str]]:
-    """Return a sentence for every number that the motion contradicts, and what was not decided."""
+    """Return a sentence for every number that the motion contradicts, and what could not be decided."""
     if not engines()["limbs"].installed:
         return [], _undecided(
             "integrating it again needs numba: pip install 'foucault-reference[fast]'"

@@ -71,7 +71,7 @@ class Numbers:
         return self.of(Fraction(2) ** exponent)
 
     def fixed(self, values: Any, bits: int) -> list[int]:
-        """Return each number of an array as an integer over 2**bits, cut off towards zero."""
+        """Return each number of an array as an integer over 2**bits, truncated towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
     def integrator(

@@ -1,4 +1,4 @@
-"""Transits by heyoka: guards around its event detection, which have ../passages.py count zeros that are close.
+"""Transits by heyoka: guards around its event detection; ../passages.py counts zeros that lie close together.
 
 So no zero of xdot is lost and none counted twice.
 

@@ -32,7 +32,7 @@ _EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
 
 
 def keep_on_disk(number: NumberType) -> None:
-    """Have what is compiled from now on kept on disk, where that serves for numbers of this type.
+    """Keep on disk the code compiled from now on, if that helps for numbers of this type.
 
     Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it
     is switched off.

@@ -87,7 +87,7 @@ REFUSED = [
         "together with --set inputs=binary64",
     ),
     ((*SCORE, "--inputs", "floats"), "--inputs", "expected auto, decimal or binary64"),
-    ((*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"), "--set", "x0=0.1 stands before it"),
+    ((*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"), "--set", "--set x0=0.1 is given as well"),
     ((*SCORE, "--t-end", "10", "--set", "t_end=20"), "--t-end", "together with --set t_end=20"),
     ((*SCORE, "--set", "z0=-3"), "z0", "a field that scenes have"),
     ((*GENERATE, *LATE), "--t-end", "together with --set run.t_end=20"),
@@ -101,7 +101,7 @@ REFUSED = [
     (
         (*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"),
         "--set",
-        "run.digits=9 stands before it",
+        "--set run.digits=9 is given as well",
     ),
     ((*GENERATE, "--level", "confimed"), "--level", "Did you mean confirmed?"),
     ((*GENERATE, "--engine", "limb"), "--engine", "Did you mean limbs?"),
@@ -111,7 +111,7 @@ REFUSED = [
     (
         ("score", "paris", "--approximation", "precession_sine"),
         "--approximation",
-        "a number, not a motion",
+        "gives a single number",
     ),
     (("stability", "--methods", "nothing_like_it"), "method", "`foucault methods` lists them"),
     (

@@ -453,7 +453,7 @@ def test_the_worst_of_each_column_is_told(foucault, tmp_path, golden, states):
         (["{good}", "--transits", "none.csv"], "--transits: got"),
         (["{good}", "--transits", "{good}.npz"], "--transits: got"),
         (["{good}", "--plot", "error.jpeg2"], "--plot: got"),
-        (["{good}", "--plot", "no/such/folder/error.svg"], "a folder that exists"),
+        (["{good}", "--plot", "no/such/folder/error.svg"], "an existing folder"),
         (["--run", ""], "--run: got"),
         (["--run", "cat {{x9}}"], "--run: got '{x9}'"),
         (["--run", "false"], "exit status 1"),
@@ -707,7 +707,7 @@ def test_a_named_model_passes_where_that_is_asked_for():
 
 
 def test_columns_in_the_place_of_the_scene_are_refused():
-    with pytest.raises(InputError, match=r"Write the rows first: judge\(rows, scene\)"):
+    with pytest.raises(InputError, match=r"call judge\(rows, scene\)"):
         judge("paris", {"t": [0.0], "x": [0.3], "y": [0.4]})
 
 
