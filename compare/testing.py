@@ -1,4 +1,4 @@
-"""Assert in your own tests that a trajectory agrees with the truth; `fixture.py` has it as a pytest fixture.
+"""Assert in your own tests that a trajectory agrees with the truth; `fixture.py` provides it as a pytest fixture.
 
 >>> from compare import assert_agrees
 >>> score = assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)

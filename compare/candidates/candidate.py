@@ -27,7 +27,7 @@ class NotFiniteError(InputError):
 
 @dataclass(frozen=True)
 class Deviation:
-    """How a candidate deviates from what was expected: in the way its file is written, or in what its program does.
+    """How a candidate deviates from what was expected: in the form of its file, or in what its program does.
 
     Attributes:
         id: a stable word.
@@ -62,9 +62,9 @@ class Candidate:
             double + low part.
         transits: times of xdot = 0 in s that came with it, or None.
         notes: remarks that a reader ought to know.
-        conventions: what reading found out about names, units and scales.
-        clock_s: what its clock showed in the first row, in s, where t is counted from that row;
-            None if t is counted from the release.
+        conventions: names, units and scales that were recognised while reading.
+        clock_s: the time on its clock in the first row, in s, if t is counted from that row; None if
+            t is counted from the release.
     """
 
     name: str
@@ -91,7 +91,7 @@ class Candidate:
 
     @classmethod
     def of_transits(cls, name: str, times: Array) -> Candidate:
-        """Make a candidate of transits alone, times in s in order: all that is known of it is that vx = 0 there.
+        """Make a candidate of transits alone, sorted times in s at which vx = 0 and nothing else is known.
 
         Raises:
             InputError: no time is above 0.
@@ -105,7 +105,7 @@ class Candidate:
 
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
-        """Check the arrays and make a candidate of them, without rows of NaN after which others follow: lost frames.
+        """Check the arrays and make a candidate of them, leaving out lost frames: rows of NaN followed by others.
 
         Raises:
             InputError: a column is missing, lengths differ, a number is not finite, or times do not
@@ -229,7 +229,7 @@ def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: boo
 
 
 def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:
-    """Multiply doubles with low parts; what is not finite, and will be refused, stays as it is."""
+    """Multiply doubles with low parts; numbers that are not finite, and will be refused, stay as they are."""
     scaled = near.copy()
     scaled_low = np.zeros_like(low)
     for i in np.flatnonzero(np.isfinite(near)).tolist():

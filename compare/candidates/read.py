@@ -85,10 +85,10 @@ def read(
 
     Args:
         source: the file's path.
-        columns: names of its columns in order, `-` for one that is not read; none if a header names
-            them.
-        units: of its times and lengths where no header names them, such as ms and cm; SI units if
-            none.
+        columns: names of its columns in order, `-` for a column to skip; not needed if a header
+            names them.
+        units: units of its times and lengths if no header names them, such as ms and cm; by default
+            SI units.
 
     Raises:
         InputError: the candidate cannot be read; the message names the line.

@@ -229,7 +229,7 @@ class ScoreOptions:
 
     @cached_property
     def named_ranges(self) -> Ranges | None:
-        """The ranges that SCENE names; None if it names a scene, or with --suite.
+        """The ranges that SCENE names; None if it names a scene, or if --suite is given.
 
         Raises:
             InputError: they cannot be read.

@@ -1,4 +1,4 @@
-"""The files of a suite: a folder whose files are named by their scenes, such as paris.csv."""
+"""The files of a suite: a folder whose files are named after scenes, such as paris.csv."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class SuiteFiles:
 
 
 def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
-    """Return the files of a folder by their scenes, sorted.
+    """Return the files of a folder, sorted by scene.
 
     Raises:
         InputError: it is no folder, holds no candidates, or two for one scene.

@@ -36,7 +36,7 @@ METHODS: Mapping[str, Method] = Registry(
 
 
 def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[str, str]:
-    """Return the commands by the names that a study calls them by.
+    """Return the commands by their names in a study.
 
     Args:
         commands: of programs of the user's own, as `candidates.external.arguments` accepts them.

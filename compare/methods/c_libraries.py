@@ -1,4 +1,4 @@
-"""Boost odeint, GSL, CVODE and ARKODE as their own users call them: a program in C++, of which no Python is a part.
+"""Boost odeint, GSL, CVODE and ARKODE as their users call them: from a program in C++, without Python.
 
 They stand beside the same codes behind a wrapper. The program is the traced equations and the
 library's part; it is compiled for the scene's equations once, and kept by its text, the compiler

@@ -1,4 +1,4 @@
-"""Least squares: by Gauss-Newton the numbers of a model with which it leaves least of some rows; power laws."""
+"""Least squares: Gauss-Newton fits of a model's parameters, and fits of power laws."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LEAST_POINTS = 3  # a fit with a standard error needs at least three
 
 
 def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbers:
-    """Return the least squares solution of `matrix` times it = `right`.
+    """Return the least-squares solution x of matrix x = right.
 
     Raises:
         LinAlgError: a number is not finite. LAPACK would print that on stdout, where a JSON
@@ -33,7 +33,7 @@ def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbe
 
 
 def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers:
-    """Return the change of numbers by which slopes come nearest to what is left.
+    """Return the change of the parameters that minimises the linearised residual.
 
     Args:
         slopes: what the rows change by with each number, shape (rows, numbers); all are brought to
@@ -53,7 +53,7 @@ def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers
 
 
 def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges: Numbers) -> Model:
-    """Return a model, for `gauss_newton`, whose slopes are taken by differences.
+    """Return a model for `gauss_newton` whose derivatives are finite differences.
 
     Args:
         rows_of: returns the rows that numbers make; NaN where they make none.
@@ -76,7 +76,7 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
 def gauss_newton(
     model: Model, start: Numbers, *, steps: int, gain: float, strays: bool = False
 ) -> tuple[Numbers, float]:
-    """Return the numbers that leave least, and the norm of what they leave.
+    """Return the parameters that minimise the residual, and the norm of that residual.
 
     Infinity where the first leave no numbers.
 
@@ -176,7 +176,7 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
 
 
 def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
-    """Return times and the largest error up to each, thinned to at most `parts` points equally far apart in log t.
+    """Return times and the largest error up to each, thinned to at most `parts` points, equidistant in log t.
 
     Args:
         t: times in s, above zero, increasing, shape (rows,), at least one.

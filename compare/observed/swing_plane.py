@@ -1,4 +1,4 @@
-"""The swing plane of samples in double: its highest points, frequency and precession. A solved scene: solver/swing.py.
+"""The swing plane of sampled states: highest points, frequency, precession. Of a solved scene: solver/swing.py.
 
 A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its
 rest position. Let Z = X + iY be the displacement in the plane at right angles to the plumb line (X
@@ -115,7 +115,7 @@ def rest_in_metres(scene: Scene) -> Array:
 
 
 def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
-    """Return times in s and azimuths in rad (unwrapped modulo π) of the largest distances from the rest position.
+    """Return times in s and azimuths in rad (unwrapped modulo π) of the apsides, the maxima of the distance from rest.
 
     Args:
         gauge: of the rest position.
@@ -169,7 +169,7 @@ def frequency(scene: Scene, swings: int = 50) -> float:
 
 
 def precession_period(scene: Scene, longest: float = 1e6) -> float:
-    """Return the time in s in which the swing plane of the full model turns by 360°: twice that of its first half turn.
+    """Return the time in s in which the full model's swing plane turns by 360°: twice that of its first half turn.
 
     Raises:
         UnreachableError: it does not turn by 180° within `longest` seconds.

@@ -1,4 +1,4 @@
-"""Figures 1 to 9 of Mathar's paper from runs of the reference: panels above one another, lines and captions."""
+"""Figures 1 to 9 of Mathar's paper from runs of the reference: stacked panels, lines and captions."""
 
 from __future__ import annotations
 
@@ -222,7 +222,7 @@ def _zero(begin: float, end: float) -> ChartLine:
 
 
 def estimate_at(latitude: float) -> float:
-    """Return the paper's last but one estimate of the frequency in Hz: (51)-(52) with g' of (48), slowed by 2K/π."""
+    """Return the paper's second to last estimate of the frequency in Hz: (51)-(52) with g' of (48), divided by 2K/π."""
     return float(anharmonic(paris().but(latitude=mpf(latitude)).case))
 
 
@@ -300,7 +300,7 @@ NAME_ONLY = Marker(".", 0)
 def dots(
     name: str, x: Any, y: Any, colour: str, marker: Marker = DOT, dashes: Any = "none"
 ) -> ChartLine:
-    """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
+    """Return points, joined if `dashes` gives a line style; dots are faint, other markers hollow."""
     joined = line(name, x, y, colour, dashes, 0.7)
     style = {**joined.style, "marker": marker.shape, "markersize": marker.size}
     if marker.shape == DOT.shape:

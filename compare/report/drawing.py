@@ -324,7 +324,7 @@ def name_ends(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> No
 
 
 def name_beside(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> None:
-    """Write the name of each line right of logarithmic axes, at the height of its end, where no other name is."""
+    """Write the name of each line to the right of logarithmic axes, at the height of its end, without overlaps."""
     low, high = axes.get_ylim()
     upwards = sorted(lines, key=lambda line: line.y[-1])
     heights = [math.log(line.y[-1] / low) / math.log(high / low) for line in upwards]
@@ -354,7 +354,7 @@ def _spread(heights: Sequence[float], gap: float) -> list[float]:
 
 
 def band(axes: Any, bound_m: float) -> None:
-    """Draw a band over errors below the bound of the reference, which cannot be measured."""
+    """Draw a band over errors below the reference's bound, which cannot be measured."""
     low, high = axes.get_ylim()
     if not low < bound_m < high:
         return

@@ -224,7 +224,7 @@ def check(request: Request, path: Path) -> None:
 
 
 def draw(swept: Swept, path: Path) -> None:
-    """Draw frequency and precession of a sweep, those of them that were wanted, into a file."""
+    """Draw frequency and precession of a sweep, as far as requested, into a file."""
     request = swept.request
     drawn = _drawn(request)
     columns = swept.columns(drawn)

@@ -1,4 +1,4 @@
-"""Compare rows, measured or computed, with what is proved for every value of uncertain inputs."""
+"""Compare measured or computed rows with the intervals that are proved for uncertain inputs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _TRANSIT = "transit"
 
 
 class Outside(NamedTuple):
-    """A number outside of what is proved.
+    """A number outside its proven interval.
 
     Attributes:
         column: of the number; "transit", or the word of a section.
@@ -61,7 +61,7 @@ class Outside(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """The verdict on a file of measurements: rows and transits that contradict what is proved for uncertain inputs.
+    """The verdict on a file of measurements: the rows and transits outside the intervals proved for uncertain inputs.
 
     Attributes:
         name: of the candidate.

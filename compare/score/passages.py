@@ -1,4 +1,4 @@
-"""Score the passages of a section, such as those of a light gate, where all inputs are certain."""
+"""Score the passages of a section, such as those of a light gate, for exact inputs."""
 
 from __future__ import annotations
 

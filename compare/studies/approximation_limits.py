@@ -1,4 +1,4 @@
-"""Where each approximation stops being good: over time, amplitude, latitude and length, to 1 mm, 1 µm, 1 arcsecond."""
+"""Where each approximation is good to 1 mm, 1 µm and 1 arcsecond: over time, amplitude, latitude and length."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class SweepRow(TimeRow):
 
 @dataclass(frozen=True)
 class LimitRow:
-    """Where an approximation is good to a limit: intervals of time in s or of the varied quantity; none if nowhere.
+    """Intervals of time in s, or of the varied quantity, in which an approximation is good to a limit; maybe none.
 
     `status` and `reason` say why it could not be tried anywhere.
     """

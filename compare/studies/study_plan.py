@@ -145,7 +145,7 @@ def bits_of(text: str) -> list[int]:
 
 
 def parsed(words: Iterable[str], kind: Callable[[str], T]) -> list[T]:
-    """Return the numbers that words are; none at all where one of them is no number."""
+    """Return words as numbers; an empty list if one of them is not a number."""
     try:
         return [kind(word) for word in words]
     except ValueError:
@@ -167,7 +167,7 @@ def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Sce
 
 
 def on_doubles(scene: Scene) -> Scene:
-    """Return the scene; if one of its grid times is not a double, with a grid step of few bits and the same end.
+    """Return the scene; if a grid time is not a double, with a grid step of few bits and the same end.
 
     A method and the truth are then compared at the same times. 0.1 s is not a double, nor are most
     of its multiples; between such a time and the nearest double the bob moves by some 1e-16 of its

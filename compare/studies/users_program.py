@@ -1,4 +1,4 @@
-"""A user's program or file on one scene: its output, at whatever times it has, against the truth there.
+"""A user's program or file on one scene: its output compared with the truth at its own times.
 
 Unlike `methods.method.external`, which has a study time a program at the golden grid times, this
 asks only where it breaks, or how far a file is off.

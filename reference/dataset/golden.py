@@ -63,7 +63,7 @@ class PrintedTable(Framed):
         return [Fraction(Decimal(text)) for text in self.decimals(name)]
 
     def bound(self, name: str) -> list[Fraction]:
-        """Return proven bounds on the errors of a column's printed values, one for each row.
+        """Return bounds on the errors of a column's printed values: proven at the level enclosed, otherwise estimated.
 
         A transit time has a bound of its own; for other columns it is the largest of all rows.
         """
@@ -87,9 +87,10 @@ class PrintedTable(Framed):
 class Golden(GridColumns):
     """A golden dataset, as read from disk: the same columns as a `Solution`, as printed.
 
-    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have
-    `table["x"]`, the same, `table.exact("x")` as fractions, `table.bound("x")`, and
-    `table.decimals("x")`, the printed texts.
+    `golden.t`, `.x`, … are the columns of the grid as binary64 arrays of shape (rows,). Of both
+    tables, `table["x"]` is such an array, `table.exact("x")` are fractions, `table.bound("x")`
+    are bounds on the errors (proven at the level enclosed, otherwise estimated), and
+    `table.decimals("x")` are the printed texts.
 
     Attributes:
         path: the folder.
@@ -98,9 +99,9 @@ class Golden(GridColumns):
         grid: `grid.csv`.
         transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically
             zero.
-        function: the golden function, None if it has none; `at` serves all the same.
-        sections: the rows of `sections.csv` of each section that the scene asks for, by its word;
-            none where the dataset is a function alone.
+        function: the golden function, or None; `at` works without it too.
+        sections: the rows of `sections.csv` for each section of the scene, by its word; empty if the
+            dataset has only a function.
     """
 
     path: Path

@@ -146,7 +146,7 @@ def integrate(
         times: increasing, from 0, in s.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
-        max_steps: most steps; 0 for any number.
+        max_steps: largest number of steps; 0 for no limit.
 
     Returns:
         The states as binary64, shape (times, variables).
@@ -196,8 +196,8 @@ def trajectory(
         formulation: a name of `model.formulations.FORMULATIONS`.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
-        alter: changes the model's constants, to see the motion that a program with another model
-            would compute.
+        alter: function that changes the model's constants, to get the motion that a program with
+            another model would compute.
 
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
@@ -205,7 +205,8 @@ def trajectory(
     Raises:
         InputError: a wrong scene, formulation or tolerance; times that do not increase from 0.
         UnreachableError: a number of the scene is too large.
-        IntegrationError: heyoka stops before the last time, as where the formulation is singular.
+        IntegrationError: heyoka stops before the last time, for example where the formulation is
+            singular.
     """
     scene = as_scene(scene)
     if formulation not in FORMULATIONS:

@@ -88,9 +88,9 @@ class Ranges(WithZeros[Intervals]):
         grid: position and velocity at those times, in m and m/s.
         zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections;
             without xdot where that is identically zero.
-        engine: whose steps were proved.
+        engine: the engine whose steps were proved.
         proof: the `BoxEnclosure`; None for ranges that were read from a file.
-        derivatives: whether derivatives were asked for. They may make every interval narrower.
+        derivatives: whether derivatives were requested. They may make every interval narrower.
     """
 
     scene: Scene

@@ -110,19 +110,20 @@ class Solution(GridColumns, WithZeros[Table]):
         grid: `columns.GRID` at those times, in SI units.
         zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections;
             without xdot where that is identically zero.
-        run: the run that the numbers come from.
+        run: the run that computed the numbers.
         checks: runs that agree with it.
-        pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
+        pilot_s: CPU seconds of the pilot runs, from which the precision was chosen.
         proof: the enclosure, at the level enclosed.
-        guard: at the level enclosed, where no run confirms every transit, one with event detection
-            that found them all, in the cheapest type that serves; it goes into no dataset.
+        guard: at the level enclosed, if no run confirms every transit: a run with event detection
+            that found them all, in the cheapest sufficient type; no dataset mentions it.
         discarded_s: CPU seconds of runs and proofs in too few bits, whose numbers are not used.
-        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest
-            on it, and a run that finds other transits is an error.
+        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rely
+            on them; a run that finds other transits is an error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,),
-    `solution.exact("x")` are fractions; both tables have `table["x"]`, `table.exact("x")`, the
-    same, and `table.bound("x")`. With a golden function `solution.at(t)` is the motion at any time.
+    `solution.exact("x")` are fractions. Both tables have `table["x"]`, `table.exact("x")` and
+    `table.bound("x")`, bounds on the errors, proven at the level enclosed and otherwise estimated.
+    With a golden function `solution.at(t)` is the motion at any time.
     """
 
     scene: Scene

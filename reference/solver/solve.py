@@ -67,19 +67,19 @@ def solve(
         sections: other moments to find, such as ["highest", "gate 30"]: docs/scene.md has the
             words.
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that
-            is installed. At the level confirmed the run that confirms is always heyoka's.
+            is installed. At the level confirmed the confirming run is always heyoka's.
         audit: at the level enclosed, check all that compiled code returns for the proof, step by
             step, so that FLINT alone proves the same digits.
-        confirm: at the level enclosed, what heyoka confirms as well, in another formulation:
-            "whole", every digit and transit, on a second core; "sampled", the end of a tenth of the
-            grid's intervals, each from its first row; or "none".
+        confirm: at the level enclosed, what heyoka confirms in another formulation:
+            "whole", every digit and transit, on a second core; "sampled", a tenth of the grid's
+            intervals, each integrated from its first row; or "none".
         function: at the level enclosed, make the golden function as well: the motion at any time,
             `Solution.at`.
         report: called with the simulated time reached, in s.
 
     Returns:
-        A `Solution`: binary64 arrays, exact values, and a bound on every number. Where inputs are
-        known to intervals only, `prove_ranges` returns intervals.
+        A `Solution`: binary64 arrays, exact values, and a bound on every number. For inputs that are
+        known only as intervals, use `prove_ranges`.
 
     Raises:
         InputError: a field of the scene is wrong.

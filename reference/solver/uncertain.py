@@ -160,14 +160,14 @@ def prove_ranges(
             words.
         engine: "heyoka", "limbs", or None for the fastest that is installed.
         times: in s, from 0 on and increasing, in place of the scene's grid.
-        derivatives: prove derivatives to these inputs too: `Ranges.derivative`. It takes longer,
-            and may make every interval narrower.
+        derivatives: prove derivatives with respect to these inputs too: `Ranges.derivative`. This
+            takes longer, and may make every interval narrower.
         report: called with the simulated time reached, in s.
 
     Raises:
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is
             not installed.
-        UnreachableError: the ranges are too wide; it tells up to which time a proof holds.
+        UnreachableError: the ranges are too wide; it says up to which time the proof reaches.
     """
     need_proof()
     settings = RunSettings(level="enclosed", t_end=t_end, transits=transits, sections=sections)

@@ -87,7 +87,11 @@ REFUSED = [
         "together with --set inputs=binary64",
     ),
     ((*SCORE, "--inputs", "floats"), "--inputs", "expected auto, decimal or binary64"),
-    ((*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"), "--set", "--set x0=0.1 is given as well"),
+    (
+        (*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"),
+        "--set",
+        "--set x0=0.1 is given as well",
+    ),
     ((*SCORE, "--t-end", "10", "--set", "t_end=20"), "--t-end", "together with --set t_end=20"),
     ((*SCORE, "--set", "z0=-3"), "z0", "a field that scenes have"),
     ((*GENERATE, *LATE), "--t-end", "together with --set run.t_end=20"),
