@@ -36,7 +36,7 @@ def method_ids() -> list[str]:
 
 METHODS = option(
     "--methods",
-    "Ids of methods, as `foucault methods` lists them (default: all that have runs for it).",
+    "Ids of methods, as `foucault methods` lists them (default: all that apply).",
     "A,B,…",
     completion_of_lists(method_ids),
 )

@@ -74,7 +74,7 @@ class ScoreOptions:
 
     scene_word: Annotated[
         str | None,
-        scene_argument("A scene's id, or the path of a TOML file; with --suite none."),
+        scene_argument("A scene's id, or the path of a TOML file; not with --suite."),
     ] = None
     candidates: Annotated[
         list[str] | None,
@@ -99,7 +99,7 @@ class ScoreOptions:
     ] = None
     columns: Annotated[
         str | None,
-        option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…"),
+        option("--columns", "A file's columns in order; - skips one.", "t,x,y,…"),
     ] = None
     units: Annotated[
         str | None,
@@ -107,11 +107,15 @@ class ScoreOptions:
     ] = None
     transits: Annotated[
         str | None,
-        option("--transits", "Score times of xdot = 0 too, or alone: in its column t.", "FILE"),
+        option(
+            "--transits",
+            "Score the times of xdot = 0 in this file's column t, too or alone.",
+            "FILE",
+        ),
     ] = None
     section: Annotated[
         str | None,
-        option("--section", "--transits are passages of this section: 'gate 30'.", "WORD"),
+        option("--section", "Take --transits as passages of this section: 'gate 30'.", "WORD"),
     ] = None
     run: Annotated[
         str | None,
@@ -128,11 +132,11 @@ class ScoreOptions:
     ] = None
     setting: Annotated[
         float | None,
-        option("--setting", "{setting} in --run, in s (default: 200 a period, or more).", "S"),
+        option("--setting", "{setting} in --run, in s (default: 200 steps a period or more).", "S"),
     ] = None
     experiments: Annotated[
         bool,
-        option("--experiments", "Run it up to eight times more, to measure why it is off."),
+        option("--experiments", "Run it up to eight more times, to find the reason for its error."),
     ] = False
     approximation: Annotated[
         str | None,
@@ -148,7 +152,7 @@ class ScoreOptions:
         str | None,
         option(
             "--baseline",
-            "Say what changed since a file, --json document, command or suite of an earlier version.",
+            "Report changes since an earlier version: its file, --json document, command or suite.",
             "FILE",
         ),
     ] = None
@@ -162,7 +166,7 @@ class ScoreOptions:
     ] = None
     covers: Annotated[
         float | None,
-        option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE"),
+        option("--covers", "Require rows up to this share of the span (default: any).", "SHARE"),
     ] = None
     t_end: Annotated[
         str | None,
@@ -196,7 +200,7 @@ class ScoreOptions:
     ] = None
     as_model: Annotated[
         bool,
-        option("--as-model", "Count agreement with a named simpler model."),
+        option("--as-model", "Accept agreement with a named simpler model."),
     ] = False
     no_diagnosis: Annotated[
         bool,

@@ -197,7 +197,7 @@ def window(
 
 
 def rotation(times: Array, swing_plane: Array) -> tuple[float, float]:
-    """Return a swing plane's rotation in degrees an hour, by a line fitted to its azimuths, and the residual."""
+    """Return a swing plane's rotation in degrees an hour by a fitted line, and the line's largest residual."""
     hours, turned = times / 3600, np.degrees(swing_plane)
     slope, start = np.polyfit(hours, turned, 1)
     return float(slope), float(np.abs(turned - slope * hours - start).max())

@@ -57,7 +57,9 @@ _OUT = option(
     "DIR",
 )
 _DIGITS = option(
-    "--digits", "Digits of the largest number in a column (default: the scene's).", "D"
+    "--digits",
+    "Significant digits of the largest number in each column (default: the scene's).",
+    "D",
 )
 _LEVEL = option(
     "--level",
@@ -67,28 +69,29 @@ _LEVEL = option(
 )
 _ENGINE = option(
     "--engine",
-    f"Integrate with {in_words(engine_names())}; auto: the fastest, or what made the dataset that ships.",
+    f"Integrate with {in_words(engine_names())}; auto: the fastest, or the engine that made the shipped dataset.",
     "E",
     completion(lambda: _ENGINES),
 )
 _NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
 _AUDIT = option(
-    "--audit/--no-audit", "Check all that compiled code returns for the proof (default: --audit)."
+    "--audit/--no-audit",
+    "Check everything that compiled code returns for the proof (default: --audit).",
 )
 _CONFIRM = option(
     "--confirm",
-    f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
-    "(default: sampled; of what ships, the whole).",
+    f"How much of a proof heyoka confirms: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
+    "(default: sampled; whole for shipped scenes).",
     "C",
     completion(lambda: CONFIRMATIONS),
 )
 _NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
 _FUNCTION = option(
     "--function/--no-function",
-    "Make the golden function, the motion at any time, of a proof (default: but for what ships without it).",
+    "Make the golden function of a proof, the motion at any time (default: yes, unless shipped without it).",
 )
-_NO_TABLES = option("--no-tables", "Write the golden function alone.")
-_ALL = option("--all", "Make all that ship and are missing or not sealed.")
+_NO_TABLES = option("--no-tables", "Write only the golden function.")
+_ALL = option("--all", "Make the shipped datasets that are missing or not sealed.")
 
 
 @dataclass(frozen=True)
@@ -209,9 +212,9 @@ _CONFLICTS = (
 def _generate(options: _GenerateOptions) -> None:
     """Solve a scene and write its golden dataset.
 
-    Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
+    If inputs are uncertain (--uncertain, or the scene's [uncertain]), it writes ranges: intervals that are proved
     for every value of these inputs.
-    foucault generate --all --workers 2 makes all that ship, into --out.
+    foucault generate --all --workers 2 makes all shipped datasets, in --out.
     """
     refuse_conflicts(options, _CONFLICTS)
     if options.every:

@@ -54,8 +54,8 @@ Uncertain = Annotated[
     list[str] | None,
     option(
         "--uncertain",
-        "Prove intervals for inputs in a range: length=±0.001, or +-0.001; may be repeated; "
-        "none: take them as exact (default: the scene's [uncertain]).",
+        "Prove intervals for an uncertain input: length=±0.001, or +-0.001; may be repeated; "
+        "none takes all as exact (default: the scene's [uncertain]).",
         "KEY=±W",
     ),
 ]
@@ -72,7 +72,7 @@ Sections = Annotated[
     list[str] | None,
     option(
         "--section",
-        "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
+        "Also find other moments: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
         "WORD",
     ),
 ]
