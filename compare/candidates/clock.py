@@ -59,7 +59,7 @@ def _of_day(hours: str, minutes: str, seconds: str) -> Fraction:
 
 
 def decimal(seconds: Fraction) -> str:
-    """Return a number of seconds as an exact decimal; it must have one."""
+    """Return a number of seconds with finitely many decimals as text, exactly."""
     digits = 0
     while (seconds * 10**digits).denominator != 1:
         digits += 1

@@ -28,7 +28,7 @@ def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbe
             document may stand.
     """
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
-        raise np.linalg.LinAlgError("numbers that are not finite")
+        raise np.linalg.LinAlgError("the linear equations have numbers that are not finite")
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=rcond)[0])
 
 

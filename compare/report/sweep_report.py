@@ -11,7 +11,7 @@ import numpy as np
 
 from reference import InputError
 from reference.commands.layout import TextColumn, paragraph, table
-from reference.errors import counted
+from reference.errors import Described, counted
 from reference.numbers.precision import Array, digits_that_hold
 from reference.scenes.scene import unit_of
 from reference.status import Status
@@ -218,7 +218,8 @@ def check(request: Request, path: Path) -> None:
     table = request.table
     if table.typed is None or len(table.shape) > 2 or set(table.values) & set(WORD_FIELDS):
         expected = "a sweep over one or two numerical fields (--over)"
-        raise InputError("--plot", str(path), expected, "Draw other sweeps from their columns.")
+        got = Described("another kind of sweep")
+        raise InputError("--plot", got, expected, "Draw other sweeps from their columns.")
     if not _drawn(request):
         raise InputError("--plot", str(path), "frequency or precession in --want")
 

@@ -249,7 +249,7 @@ def plain(value: object) -> Any:
         return value.pattern
     if isinstance(value, Deviation):
         return value.text
-    raise TypeError(f"{value!r} has no form in JSON")
+    raise TypeError(f"{value!r} cannot be written as JSON")
 
 
 def _doubles(values: Array) -> str:
