@@ -148,7 +148,7 @@ class BoxTooWideError(UnreachableError):
     def __init__(self, holds_s: float, advice: str) -> None:
         self.holds_s = holds_s
         super().__init__(
-            f"The box of inputs is too wide: it holds up to t = {holds_s:.4g} s.", advice
+            f"The inputs are too uncertain: the proof reaches only t = {holds_s:.4g} s.", advice
         )
 
 

@@ -185,12 +185,18 @@ def underneath(scene: Scene, law: str = "The formula") -> str | None:
     """Return a reason to refuse a release that is not below the suspension, or None."""
     angles = scene.exact.angles
     high = angles is not None and angles[0] >= 90
-    return f"{law} holds below the suspension only: give release.angle below 90" if high else None
+    return (
+        f"{law} is valid only below the suspension: give release.angle below 90" if high else None
+    )
 
 
 def at_rest(scene: Scene) -> str | None:
     """Return a reason to refuse a release with a velocity, or None."""
-    return None if scene.exact.at_rest else "It is for a release at rest: leave out the velocity"
+    return (
+        None
+        if scene.exact.at_rest
+        else "The approximation is for a release at rest: leave out the velocity"
+    )
 
 
 def under_gravity(scene: Scene) -> str | None:
@@ -198,7 +204,7 @@ def under_gravity(scene: Scene) -> str | None:
     return (
         None
         if scene.exact.gravity
-        else "Without gravity nothing pulls the bob back: give site.gravity above 0"
+        else "Without gravity no force pulls the bob back: give site.gravity above 0"
     )
 
 

@@ -278,7 +278,7 @@ def _tail(errors: BinaryIO) -> str:
     # the program may still be writing: its place in the file stays
     size = os.fstat(errors.fileno()).st_size
     text = os.pread(errors.fileno(), _TAIL, max(0, size - _TAIL)).decode(errors="replace").strip()
-    return f"It said: {text}" if text else "It said nothing on stderr."
+    return f"Its stderr: {text}" if text else "It printed nothing on stderr."
 
 
 def timed(

@@ -97,8 +97,8 @@ def programs_of(
 def resumes(folder: Path | None) -> str:
     """Return a sentence on what becomes of a stopped campaign whose results go into a folder (None: nowhere)."""
     if folder is None:
-        return "nothing was kept; with --out, the same command would go on where it stopped"
-    return "the same command with the same --out goes on where it stopped"
+        return "nothing was kept; with --out DIR the same command could resume"
+    return "the same command with the same --out resumes"
 
 
 def announce(text: str) -> None:

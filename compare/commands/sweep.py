@@ -193,7 +193,7 @@ def _run(request: Request, options: SweepOptions) -> Swept:
     if out is None:
         kept = "nothing was kept; give --out DIR"
     else:
-        kept = f"what is done is in {out}: `foucault sweep --out {out}` goes on"
+        kept = f"finished rows are in {out}: `foucault sweep --out {out}` resumes"
     with stoppable(kept), progress() as show:
         # the audit is done on one core, after the rows on all
         workers = options.workers or usable_cores()

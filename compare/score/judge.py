@@ -410,5 +410,5 @@ def _with_changes(
     changes = since(score, baseline, options.explain)
     notes = score.notes
     if changes is None:
-        notes = (*notes, "the baseline has no score of it: this verdict stands alone")
+        notes = (*notes, "the baseline has no score of it, so nothing is compared")
     return replace(score, since=changes, notes=notes)

@@ -270,7 +270,7 @@ def _allowed(score: Score) -> str:
     if isinstance(score.golden, Solution):
         return allowed
     if not score.input_floor_m:
-        return f"{allowed}; the inputs are doubles as they stand"
+        return f"{allowed}; the inputs are exact doubles"
     ratio = errors.max_m / score.input_floor_m
     return f"{allowed}; {ratio:.2g} times the input floor of {score.input_floor_m:.2g} m"
 

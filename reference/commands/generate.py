@@ -405,7 +405,7 @@ def _count(decided: int, possible: int) -> str:
     """Return how many zeros are decided, and how many intervals are left open."""
     if not possible:
         return str(decided)
-    return f"{decided}, and {counted(possible, 'interval')} that may hold more"
+    return f"{decided}, and {counted(possible, 'interval')} that may contain more"
 
 
 def _width_at_the_end(ranges: Ranges) -> str:

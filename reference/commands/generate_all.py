@@ -147,7 +147,7 @@ def generate_all(
     if cluster is not None:
         needed("distributed", "cluster", "--cluster", "sending scenes to a cluster")
     every = jobs(replaced, out)
-    with stoppable("what is done stays, and the same command goes on"), progress() as show:
+    with stoppable("finished datasets are kept; the same command resumes"), progress() as show:
         undone = _undone(every)
         move = show("datasets", len(undone), "datasets")
         rows = []

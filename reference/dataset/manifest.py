@@ -256,7 +256,7 @@ class Manifest(ManifestPart):
             needed.append("sections.csv")
         lacking = [name for name in needed if name not in self.files]
         if lacking and not self.alone:
-            yield f"files: {' and '.join(lacking)} must be there, but for a golden function alone"
+            yield f"files: {' and '.join(lacking)} must be there, unless the dataset is a golden function alone"
 
         asks_for_sections = "sections" in self.scene.get("run", ())
         if asks_for_sections != (self.sections is not None):

@@ -231,7 +231,7 @@ def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
     try:
         check_ranges(texts, ranges.proof.proved)
     except (ArithmeticError, LookupError, ValueError) as error:
-        return [f"what is printed does not hold what is proved: {error}"]
+        return [f"the printed intervals do not contain the proven ones: {error}"]
     return []
 
 

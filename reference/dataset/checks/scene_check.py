@@ -197,7 +197,7 @@ def problems(files: DatasetFiles) -> Iterator[str]:
     manifest = files.manifest
     formulation = manifest.run.formulation
     if formulation not in FORMULATIONS:
-        yield f"{MANIFEST}: run.formulation = {formulation} is none"
+        yield f"{MANIFEST}: run.formulation = {formulation} is not a formulation"
         return
     expected = _expected(files)
     for place, *values in differences(manifest.model_dump(), expected.model_dump()):
@@ -386,7 +386,7 @@ def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
         gap = getattr(check, name)
         bound = getattr(manifest.bounds, name)
         if gap is not None and bound and Fraction(gap) > Fraction(bound):
-            yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
+            yield f"{MANIFEST}: cross_checks: the runs differ by {gap}, more than bounds.{name} = {bound}"
 
 
 def _derived(files: DatasetFiles) -> Iterator[str]:

@@ -157,13 +157,13 @@ WORDS = {
     "an id with a change that is none": (lambda m: m.update(id="paris+release.x=0.3"), "id = paris+release.x=0.3 does"),
     "a scene without its site": (lambda m: m["scene"].pop("site"), "scene.site = None does not follow"),
     "another id": (lambda m: m.update(id="paris+site.latitude=0"), "id = paris+site.latitude=0 does not follow"),
-    "another formulation": (lambda m: m["run"].update(formulation="guess"), "run.formulation = guess is none"),
+    "another formulation": (lambda m: m["run"].update(formulation="guess"), "run.formulation = guess is not a formulation"),
     "a check in no formulation": (
         lambda m: m["cross_checks"][0].update(formulation="guess"), "guess is no formulation"),
     "a check in the same formulation": (
         lambda m: m["cross_checks"][0].update(formulation=m["run"]["formulation"]), "no cross-check is in another"),
     "runs that do not agree": (
-        lambda m: m["cross_checks"][0].update(position_m="1.0e-10"), "the runs are 1.0e-10 apart"),
+        lambda m: m["cross_checks"][0].update(position_m="1.0e-10"), "the runs differ by 1.0e-10"),
     "a smaller bound": (lambda m: m["bounds"]["grid"].update(x="1.0e-25"), "is not from half a unit to one"),
     "a smaller largest bound": (
         lambda m: m["bounds"].update(position_m=m["bounds"]["grid"]["x"]), "bounds.position_m = "),
