@@ -157,7 +157,7 @@ WORDS = {
     "an id with a change that is none": (lambda m: m.update(id="paris+release.x=0.3"), "id = paris+release.x=0.3 does"),
     "a scene without its site": (lambda m: m["scene"].pop("site"), "scene.site = None does not follow"),
     "another id": (lambda m: m.update(id="paris+site.latitude=0"), "id = paris+site.latitude=0 does not follow"),
-    "another formulation": (lambda m: m["run"].update(formulation="guess"), "run.formulation = guess is not a formulation"),
+    "another formulation": (lambda m: m["run"].update(formulation="guess"), "guess is not a formulation"),
     "a check in no formulation": (
         lambda m: m["cross_checks"][0].update(formulation="guess"), "guess is no formulation"),
     "a check in the same formulation": (
