@@ -109,7 +109,7 @@ class ScoreOptions:
         str | None,
         option(
             "--transits",
-            "Score the times of xdot = 0 in this file's column t, too or alone.",
+            "Also (or only) score times of xdot = 0: column t.",
             "FILE",
         ),
     ] = None
@@ -132,11 +132,11 @@ class ScoreOptions:
     ] = None
     setting: Annotated[
         float | None,
-        option("--setting", "{setting} in --run, in s (default: 200 steps a period or more).", "S"),
+        option("--setting", "{setting} in --run, in s (default: 200 a period, or more).", "S"),
     ] = None
     experiments: Annotated[
         bool,
-        option("--experiments", "Run it up to eight more times, to find the reason for its error."),
+        option("--experiments", "Run it up to eight more times, to explain its error."),
     ] = False
     approximation: Annotated[
         str | None,
@@ -166,7 +166,7 @@ class ScoreOptions:
     ] = None
     covers: Annotated[
         float | None,
-        option("--covers", "Require rows up to this share of the span (default: any).", "SHARE"),
+        option("--covers", "Require rows to this share of the span (default: any).", "SHARE"),
     ] = None
     t_end: Annotated[
         str | None,

@@ -1,4 +1,4 @@
-"""What a caller asks for: a scene with the settings of its run, an engine, and further checks.
+"""A caller's request: a scene with the settings of its run, an engine, and further checks.
 
 Mistakes are refused before any work.
 """

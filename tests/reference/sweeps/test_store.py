@@ -77,7 +77,7 @@ def test_any_number_of_workers_and_any_interruption_give_the_same_bytes(whole, t
     (folder / "rows/.part-00000002.parquet.partial-abc").mkdir()
     (folder / "rows/part-00000005.parquet").unlink()
     os.mkfifo(folder / "rows/part-00000005.parquet")
-    with pytest.raises(InputError, match="4 of 6 are missing or damaged"):
+    with pytest.raises(InputError, match="4 of 6 parts are missing or damaged"):
         load_sweep(folder)
     done = []
     run(asked(folder), folder, workers=2, report=done.append)
