@@ -22,13 +22,13 @@ MARKER, FIXTURE = "foucault_scenes", "foucault_scene"
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker."""
+    """Register the marker `foucault_scenes`."""
     text = "run the test once for each scene, with the tolerance in m where one is given"
     config.addinivalue_line("markers", f"{MARKER}(*scenes, **tolerances): {text}")
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Make one test of each scene that the marker names."""
+    """Make one test for each scene that the marker names."""
     if FIXTURE not in metafunc.fixturenames:
         return
     scenes: dict[str, float | None] = {}

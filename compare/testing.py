@@ -1,4 +1,4 @@
-"""Assert in your own tests that a trajectory agrees with the truth; `fixture.py` has it as a pytest fixture.
+"""Assert in your own tests that a trajectory agrees with the truth; `fixture.py` provides it as a pytest fixture.
 
 >>> from compare import assert_agrees
 >>> score = assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
+from reference.errors import Described
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
@@ -89,12 +90,12 @@ def _candidate_of(states: Array, times: Array) -> Candidate:
         InputError: the states have another shape.
     """
     if states.ndim == 2 and 1 < states.shape[0] != times.size == states.shape[1]:
-        got = f"shape {states.shape} for {times.size} times"
-        advice = "Give a row for each time: transpose them, as in sol.y.T of SciPy."
+        got = Described(f"shape {states.shape} for {times.size} times")
+        advice = "Give one row for each time: transpose the array, as in sol.y.T of SciPy."
         raise InputError("states", got, "shape (rows, columns)", advice)
     if states.ndim != 2 or states.shape[1] not in (2, 3, 6):
         expected = "shape (rows, 2), (rows, 3) or (rows, 6)"
-        raise InputError("states", f"shape {states.shape}", expected)
+        raise InputError("states", Described(f"shape {states.shape}"), expected)
     names = COLUMNS[: states.shape[1]]
     return candidate_of("states", {"t": times, **dict(zip(names, states.T, strict=True))})
 

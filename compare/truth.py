@@ -48,7 +48,7 @@ Report = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Progress:
-    """What is called while a scene is solved, which may take long.
+    """Callbacks while a scene is solved, which may take long.
 
     Attributes:
         announce: called with a message before a scene is solved.
@@ -264,7 +264,7 @@ def shipping(scene: Scene) -> Golden | None:
 
 
 def solves(golden: Golden, scene: Scene) -> bool:
-    """Return True if a dataset has the scene's inputs and their reading, its span, and transits if it asks for any."""
+    """Return True if a dataset has the scene's inputs, reading and span, and the transits that it asks for."""
     other = golden.scene
     same = other.inputs == scene.inputs and _same_problem(other, scene)
     spans = other.exact.t_end >= scene.exact.t_end

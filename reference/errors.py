@@ -28,6 +28,15 @@ class FoucaultError(Exception):
         super().__init__(plain_lines(text))
 
 
+class Described(str):
+    """What a field got, described rather than quoted: a message shows it without quotation marks."""
+
+    __slots__ = ()
+
+
+NOTHING = Described("nothing")
+
+
 class InputError(FoucaultError):
     """A user's mistake: the field, the value it got, what was expected, and advice."""
 
@@ -38,21 +47,30 @@ class InputError(FoucaultError):
         self.got = got
         self.expected = expected
         self.advice = advice
-        text = f"{plain(field)}: got {_shown(got)!r}, expected {expected}."
+        text = f"{plain(field)}: got {_shown(got)}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
 
 
 class NotInstalledError(InputError):
-    """A package is missing: the field that needs it, its purpose, the extra that installs it."""
+    """A package is missing: the field that needs it, its purpose, and what pip has to install."""
 
     def __init__(
-        self, field: str, purpose: str, package: str, extra: str, instead: str = ""
+        self, field: str, purpose: str, package: str, requirement: str, instead: str = ""
     ) -> None:
         expected = f"the package {package}"
-        advice = f"Install it with pip install 'foucault-reference[{extra}]'{instead}."
-        super().__init__(field, "not installed", expected, advice)
+        advice = f"Install it with pip install {requirement}{instead}."
+        super().__init__(field, NOTHING, expected, advice)
         text = f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"
         self.args = (plain_lines(text),)
+
+
+class NoEffectError(InputError):
+    """An option has no effect in this case, such as "without --run"."""
+
+    def __init__(self, option: str, value: str, case: str) -> None:
+        advice = "Leave it out."
+        super().__init__(option, value, f"no value {case}", advice)
+        self.args = (plain_lines(f"{plain(option)}: has no effect {case}. {advice}"),)
 
 
 @contextmanager
@@ -98,13 +116,15 @@ def all_of(mistakes: Sequence[InputError]) -> InputError:
 
 
 def _shown(value: object) -> str:
-    """Return the beginning of a value as text."""
+    """Return the beginning of a value in quotation marks, or a description without them."""
+    if isinstance(value, Described):
+        return shortened(plain(value), LONGEST_VALUE)
     try:
         text = value if isinstance(value, str) else repr(value)
     # an integer of more than 4300 digits, or lists in lists without end
     except (ValueError, RecursionError):
-        text = f"too large a value to print, {type(value).__name__}"
-    return shortened(text, LONGEST_VALUE)
+        return f"a value too large to print, of type {type(value).__name__}"
+    return repr(shortened(text, LONGEST_VALUE))
 
 
 class UnreachableError(FoucaultError):
@@ -128,7 +148,7 @@ class BoxTooWideError(UnreachableError):
     def __init__(self, holds_s: float, advice: str) -> None:
         self.holds_s = holds_s
         super().__init__(
-            f"The box of inputs is too wide: it holds up to t = {holds_s:.4g} s.", advice
+            f"The inputs are too uncertain: the proof reaches only t = {holds_s:.4g} s.", advice
         )
 
 

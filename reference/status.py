@@ -1,4 +1,4 @@
-"""The outcome of one run among many: a word, its meaning, and what to do about it."""
+"""The outcome of one run of many: a word, its meaning, and what to do about it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _TEXTS = texts_of(__file__)
 
 
 class Status(StrEnum):
-    """Outcome of a run; equal to its word, so that it stands in JSON and CSV as it is."""
+    """Outcome of a run; equal to its word, so that JSON and CSV contain the word."""
 
     OK = "ok"
     EXTRAPOLATED = "extrapolated"
@@ -39,5 +39,5 @@ class Status(StrEnum):
 
     @property
     def words(self) -> str:
-        """The word as it is read, such as "out of time"."""
+        """The word with spaces, for people, such as "out of time"."""
         return self.value.replace("_", " ")

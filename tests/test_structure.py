@@ -147,7 +147,8 @@ PUBLIC = {
     "reference.engines.heyoka.propagator": "AutonomousSystem Propagator compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "MAX_STEPS Variants",
-    "reference.errors": "BeyondDoublesError Stopped checked_path counted did_you_mean in_words usable",
+    "reference.errors": "BeyondDoublesError Described NOTHING NoEffectError Stopped checked_path counted did_you_mean "
+    "in_words usable",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
     "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero",

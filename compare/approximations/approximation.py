@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene, UnreachableError
+from reference.errors import Described
 from reference.numbers.precision import Array
 
 from .case import PaperCase
@@ -79,7 +80,9 @@ class Motion(Approximation):
         grid = np.asarray(times, dtype=np.float64)
         if grid.ndim != 1 or not len(grid) or grid[0] < 0 or not np.all(np.diff(grid) > 0):
             raise InputError(
-                "times", f"{grid.shape} numbers", "increasing times in s, the first not negative"
+                "times",
+                Described(f"an array of shape {grid.shape}"),
+                "increasing times in s, the first 0 or later",
             )
         try:
             case = PaperCase.of_scene(scene)

@@ -169,7 +169,8 @@ def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:
     square = l2 - x * x - y * y
     if not np.min(square) > 0:
         raise UnreachableError(
-            "the approximate motion leaves the sphere.", "The amplitude is beyond its domain."
+            "the approximate motion leaves the sphere.",
+            "The amplitude is too large for this approximation.",
         )
     z = -np.sqrt(square)
     return np.column_stack((x, y, z, vx, vy, -(x * vx + y * vy) / z))
@@ -184,12 +185,18 @@ def underneath(scene: Scene, law: str = "The formula") -> str | None:
     """Return a reason to refuse a release that is not below the suspension, or None."""
     angles = scene.exact.angles
     high = angles is not None and angles[0] >= 90
-    return f"{law} holds below the suspension only: give release.angle below 90" if high else None
+    return (
+        f"{law} is valid only below the suspension: give release.angle below 90" if high else None
+    )
 
 
 def at_rest(scene: Scene) -> str | None:
     """Return a reason to refuse a release with a velocity, or None."""
-    return None if scene.exact.at_rest else "It is for a release at rest: leave out the velocity"
+    return (
+        None
+        if scene.exact.at_rest
+        else "The approximation is for a release at rest: leave out the velocity"
+    )
 
 
 def under_gravity(scene: Scene) -> str | None:
@@ -197,7 +204,7 @@ def under_gravity(scene: Scene) -> str | None:
     return (
         None
         if scene.exact.gravity
-        else "Without gravity nothing pulls the bob back: give site.gravity above 0"
+        else "Without gravity no force pulls the bob back: give site.gravity above 0"
     )
 
 

@@ -49,7 +49,7 @@ def turntable_frequency(case: PaperCase, gravity: Any, turn: Any) -> Any:
     """
     omega = case.ctx.sqrt(gravity / case.length + turn**2)
     if not omega:
-        raise UnreachableError("nothing pulls the bob back: gravity and centrifugal force cancel.")
+        raise UnreachableError("no force pulls the bob back: gravity and centrifugal force cancel.")
     return omega
 
 

@@ -95,7 +95,7 @@ def _path(case: PaperCase, times: Array, items: frozenset[Item]) -> Array:
         states = integrated(VARIABLES, partial(derivatives, items=items), start, less, times)
     except IntegrationError as error:
         raise IntegrationError(
-            f"{error} (43) holds only until the bob comes to the horizontal."
+            f"{error} Equation (43) is valid only until the bob reaches the horizontal."
         ) from None
     x, y, vx, vy = (states * float(case.length)).T
     return hung(x, y, vx, vy, case.length)

@@ -55,7 +55,7 @@ def _path(case: PaperCase, times: Array) -> Array:
 
 def _not_upright(scene: Scene) -> str | None:
     upright = scene.exact.angles is not None and scene.exact.angles[0] == 180
-    return "The bob stands upright: give release.angle below 180" if upright else None
+    return "The bob is released upright: give release.angle below 180" if upright else None
 
 
 APPROXIMATIONS = (

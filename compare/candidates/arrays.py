@@ -9,9 +9,10 @@ from typing import IO, Any
 import numpy as np
 
 from reference import InputError
+from reference.errors import Described, NoEffectError
 from reference.numbers.precision import Array
 
-from .candidate import ADVICE, COLUMNS, Candidate, checked_transits
+from .candidate import ADVICE, COLUMNS, FEWER_ROWS, Candidate, checked_transits
 from .names import NEEDED, Layout, Naming, by_number, given, layout, meaning
 
 # bytes of the arrays that are read, unpacked: two million rows of long doubles
@@ -20,7 +21,8 @@ _MOST_ARRAYS = 1000
 _TRANSITS = "transits"
 _TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
 _AS_NAMED = Layout({}, {}, ())  # arrays by their columns' names, in SI units
-_EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
+_EXPECTED = "arrays t, x, y and optionally z, vx, vy, vz, transits"
+_RAGGED = Described("rows of different lengths")
 
 
 def candidate_of(
@@ -81,9 +83,10 @@ def real_array(values: Any, name: str) -> Array:
     try:
         array = np.asarray(values)
     except ValueError:
-        raise InputError(name, "rows of different lengths", "an array of real numbers") from None
+        raise InputError(name, _RAGGED, "an array of real numbers") from None
     if array.size and array.dtype.kind not in "fiu":
-        raise InputError(name, f"dtype {array.dtype}", "an array of real numbers")
+        got = Described(f"dtype {array.dtype}")
+        raise InputError(name, got, "an array of real numbers")
     return array
 
 
@@ -103,13 +106,14 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
             }
         if any(word.startswith("xl/") for word in members):
             advice = "Save the sheet as CSV."
-            raise InputError(name, "an Excel workbook", "text with named columns", advice)
+            got = Described("an Excel workbook")
+            raise InputError(name, got, "text with named columns", advice)
         chosen = [word for word in members if word == _TRANSITS or meaning(word, {}) is not None]
         chosen = chosen or [word for word in members if word == _TABLE]
         size = sum(members[word].file_size for word in chosen)
         if size > MAX_UNPACKED:
-            got = f"{size} bytes unpacked"
-            raise InputError(name, got, f"at most {MAX_UNPACKED}", "Thin the output out.")
+            got = Described(f"{size} bytes when unpacked")
+            raise InputError(name, got, f"at most {MAX_UNPACKED}", FEWER_ROWS)
         stream.seek(0)
         with np.load(stream, allow_pickle=False) as arrays:
             loaded = {word: arrays[word] for word in chosen}
@@ -117,7 +121,8 @@ def read_archive(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
         raise
     # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
     except Exception as error:
-        raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
+        got = Described("a damaged .npz archive")
+        raise InputError(name, got, _EXPECTED, f"{error}.") from None
     return _of_arrays(loaded, name, naming)
 
 
@@ -131,7 +136,8 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
         array = np.load(stream, allow_pickle=False)
     except Exception as error:  # numpy raises several kinds of errors for a damaged file
         expected = "a table of real numbers"
-        raise InputError(name, "a damaged .npy file", expected, f"{error}.") from None
+        got = Described("a damaged .npy file")
+        raise InputError(name, got, expected, f"{error}.") from None
     words = array.dtype.names  # of which none means transits: there is one for each row
     records = {word: array[word] for word in words or () if word != _TRANSITS}
     return _of_arrays(records or {_TABLE: array}, name, naming)
@@ -140,11 +146,10 @@ def read_array(stream: IO[bytes], name: str, naming: Naming) -> Candidate:
 def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidate:
     """Make a candidate of arrays with names, or of a table, whose columns the user names, or their number does."""
     if not arrays:
-        raise InputError(name, "none of them", _EXPECTED)
+        raise InputError(name, Described("arrays with other names"), _EXPECTED)
     if [*arrays] != [_TABLE]:
         if naming.columns:
-            expected = "no such option for arrays with names"
-            raise InputError("--columns", ",".join(naming.columns), expected)
+            raise NoEffectError("--columns", ",".join(naming.columns), "for arrays with names")
         times = arrays.pop(_TRANSITS, None)
         transits = None
         if times is not None:
@@ -160,9 +165,9 @@ def _of_arrays(arrays: dict[str, object], name: str, naming: Naming) -> Candidat
     else:
         columns = by_number(count, NEEDED, naming)
     if columns is None:
-        expected = "a table of 3, 4 or 7 columns, t, x, y first"
-        advice = "One row for each time; --columns names the columns."
-        raise InputError(name, f"shape {table.shape}", expected, advice)
+        expected = "a table of 3, 4 or 7 columns that begin with t, x, y"
+        advice = "Write one row for each time, or name the columns by --columns."
+        raise InputError(name, Described(f"shape {table.shape}"), expected, advice)
     return _candidate(name, [*table.T], columns)
 
 

@@ -1,4 +1,4 @@
-"""A candidate: a trajectory to be judged, held as checked NumPy arrays wherever it comes from."""
+"""A candidate: a trajectory to be judged, as checked NumPy arrays, whatever its source."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError
-from reference.errors import counted
+from reference.errors import Described, counted
 from reference.numbers.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 LARGEST = 1e100  # a larger number means that the run has blown up; below, squares cannot overflow
-ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
+ADVICE = "Columns are t, x, y and optionally z, vx, vy, vz."
+NO_ROWS = Described("no rows")
+# advice for too large an output
+FEWER_ROWS = "Print fewer rows."
 
 
 class NotFiniteError(InputError):
@@ -24,7 +27,7 @@ class NotFiniteError(InputError):
 
 @dataclass(frozen=True)
 class Deviation:
-    """How a candidate deviates from what was expected: in the way its file is written, or in what its program does.
+    """How a candidate deviates from what was expected: in the form of its file, or in what its program does.
 
     Attributes:
         id: a stable word.
@@ -59,9 +62,9 @@ class Candidate:
             double + low part.
         transits: times of xdot = 0 in s that came with it, or None.
         notes: remarks that a reader ought to know.
-        conventions: what reading found out about names, units and scales.
-        clock_s: what its clock showed in the first row, in s, where t is counted from that row;
-            None if t is counted from the release.
+        conventions: names, units and scales that were recognised while reading.
+        clock_s: the time on its clock in the first row, in s, if t is counted from that row; None if
+            t is counted from the release.
     """
 
     name: str
@@ -83,12 +86,12 @@ class Candidate:
 
     @property
     def positions(self) -> bool:
-        """True if it has positions; False for one that has transits alone."""
+        """True if it has positions; False if it has only transits."""
         return "x" in self.columns
 
     @classmethod
     def of_transits(cls, name: str, times: Array) -> Candidate:
-        """Make a candidate of transits alone, times in s in order: all that is known of it is that vx = 0 there.
+        """Make a candidate of transits alone, sorted times in s at which vx = 0 and nothing else is known.
 
         Raises:
             InputError: no time is above 0.
@@ -96,12 +99,13 @@ class Candidate:
         t = np.unique(times[times > 0])
         if not len(t):
             advice = "Did the program stop early?"
-            raise InputError(f"{name}: t", "no transit after t = 0", "at least one", advice)
+            got = Described("no transit after t = 0")
+            raise InputError(f"{name}: t", got, "at least one", advice)
         return cls(name, t, {"vx": np.zeros(len(t))}, transits=times)
 
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
-        """Check the arrays and make a candidate of them, without rows of NaN after which others follow: lost frames.
+        """Check the arrays and make a candidate of them, leaving out lost frames: rows of NaN followed by others.
 
         Raises:
             InputError: a column is missing, lengths differ, a number is not finite, or times do not
@@ -119,7 +123,7 @@ class Candidate:
             t = t[~lost]
             columns = {word: column[~lost] for word, column in columns.items()}
         if not len(t):
-            raise InputError(name, "no rows", "at least one row", "Is the output empty?")
+            raise InputError(name, NO_ROWS, "at least one row", "Is the output empty?")
         _check_order(
             t, f"{name}: t", "in row", "Sort the rows and drop repeated times.", strictly=True
         )
@@ -150,14 +154,16 @@ def _check_columns(name: str, t: Array, columns: dict[str, Array]) -> None:
     """
     for required in ("x", "y"):
         if required not in columns:
-            got = f"columns t, {', '.join(columns)}"
+            got = Described(f"the columns t, {', '.join(columns)}")
             raise InputError(name, got, f"a column {required}", ADVICE)
     if t.ndim != 1:
-        raise InputError(f"{name}: t", f"shape {t.shape}", "a one-dimensional array")
+        got = Described(f"shape {t.shape}")
+        raise InputError(f"{name}: t", got, "a one-dimensional array")
     for word, column in columns.items():
         if column.shape != t.shape:
-            expected = f"a one-dimensional array of {t.size} numbers, as t"
-            raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
+            got = Described(f"shape {column.shape}")
+            expected = f"a one-dimensional array of {t.size} numbers, as many as t has"
+            raise InputError(f"{name}: {word}", got, expected)
 
 
 def _check_finite(name: str, columns: dict[str, Array], rows: npt.NDArray[np.bool_]) -> None:
@@ -170,9 +176,9 @@ def _check_finite(name: str, columns: dict[str, Array], rows: npt.NDArray[np.boo
         invalid = ~(np.abs(column) <= LARGEST) & rows  # true for NaN as well
         if invalid.any():
             row = int(np.argmax(invalid))
-            got = f"{column[row]} in row {row + 1}"
-            expected = f"a finite number below {LARGEST:g} in size"
-            advice = "The run failed there: score the rows before it, or correct it."
+            got = Described(f"{column[row]} in row {row + 1}")
+            expected = f"a finite number of absolute value below {LARGEST:g}"
+            advice = "The run failed there: correct it, or score only the rows before it."
             raise NotFiniteError(f"{name}: {word}", got, expected, advice)
 
 
@@ -195,10 +201,12 @@ def checked_transits(times: Array, name: str) -> Array:
     """
     times = np.asarray(times, dtype=np.float64)
     if times.ndim != 1:
-        raise InputError(name, f"shape {times.shape}", "one-dimensional times in s")
+        got = Described(f"shape {times.shape}")
+        raise InputError(name, got, "a one-dimensional array of times in s")
     if not np.isfinite(times).all():
         row = int(np.argmin(np.isfinite(times)))
-        raise InputError(name, f"{times[row]} as transit {row + 1}", "finite times in s")
+        got = Described(f"{times[row]} as transit {row + 1}")
+        raise InputError(name, got, "finite times in s")
     _check_order(times, name, "as transit", "", strictly=False)
     return times
 
@@ -209,18 +217,19 @@ def _check_order(times: Array, name: str, at: str, advice: str, *, strictly: boo
     `at` is how a message names a place.
     """
     if len(times) and times[0] < 0:
-        count = "Count them from the release, and leave out rows before it."
-        raise InputError(name, f"{times[0]:.17g} {at} 1", "times from 0 on, in s", count)
+        got = Described(f"{times[0]:.17g} {at} 1")
+        advice = "Count times from the release, and leave out rows before it."
+        raise InputError(name, got, "times in s, 0 or later", advice)
     unordered = np.diff(times) <= 0 if strictly else np.diff(times) < 0
     if unordered.any():
         row = int(np.argmax(unordered))
-        got = f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}"
+        got = Described(f"{times[row + 1]:.17g} {at} {row + 2} after {times[row]:.17g}")
         expected = f"{'strictly ' * strictly}increasing times, in s"
         raise InputError(name, got, expected, advice)
 
 
 def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:
-    """Multiply doubles with low parts; what is not finite, and will be refused, stays as it is."""
+    """Multiply doubles with low parts; numbers that are not finite, and will be refused, stay as they are."""
     scaled = near.copy()
     scaled_low = np.zeros_like(low)
     for i in np.flatnonzero(np.isfinite(near)).tolist():

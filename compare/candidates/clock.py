@@ -1,4 +1,4 @@
-"""Times that a clock shows: hours:minutes:seconds, or a date and these; a moment that counts from 1970."""
+"""Times shown by a clock: hours:minutes:seconds, with or without a date, or seconds since 1970."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HOW = "Write seconds since the release, or hours:minutes:seconds."
 
 
 def seconds_of(text: str, where: str) -> Fraction:
-    """Return what a clock shows in s: since midnight, or with a date since 1970.
+    """Return the time on a clock in s: since midnight, or, with a date, since 1970.
 
     Raises:
         InputError: it is no clock's text, or two numbers alone, which may be hours and minutes.
@@ -27,7 +27,7 @@ def seconds_of(text: str, where: str) -> Fraction:
         return _since_1970(moment, where)
     clock = CLOCK.fullmatch(text)
     if clock is None:
-        raise InputError(where, text[:40], "a time as in the first row", HOW)
+        raise InputError(where, text[:40], "a time in the form of the first row", HOW)
     hours, minutes, seconds = clock.groups()
     if hours is None and not {".", ","} & {*seconds}:
         advice = "Are these hours and minutes, or minutes and seconds?"
@@ -45,7 +45,7 @@ def _since_1970(moment: re.Match[str], where: str) -> Fraction:
     try:
         days = (date(int(year), int(month), int(day)) - date(1970, 1, 1)).days
     except ValueError:
-        raise InputError(where, moment[0][:40], "a date of the calendar", HOW) from None
+        raise InputError(where, moment[0][:40], "a date that exists", HOW) from None
     zone_s = 0
     if sign:
         zone_s = (int(zone_hours) * 60 + int(zone_minutes)) * 60
@@ -59,7 +59,7 @@ def _of_day(hours: str, minutes: str, seconds: str) -> Fraction:
 
 
 def decimal(seconds: Fraction) -> str:
-    """Return a number of seconds, of which a decimal is exact, as that decimal."""
+    """Return a number of seconds with finitely many decimals as text, exactly."""
     digits = 0
     while (seconds * 10**digits).denominator != 1:
         digits += 1
@@ -71,7 +71,7 @@ def decimal(seconds: Fraction) -> str:
 
 
 def shown(seconds: float) -> str:
-    """Return what a clock showed, for people: with the date if it counts from 1970."""
+    """Return the time on a clock for people, with the date if it counts from 1970."""
     text = f"{seconds:.10g} s" if abs(seconds) < 1e9 else f"{seconds:.14g} s"
     if not UNIX[0] <= seconds < UNIX[1]:
         return text

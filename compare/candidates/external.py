@@ -59,7 +59,7 @@ done
 """
 _TAIL = 400  # characters of stderr that a message quotes
 _FOR_A_SHELL = re.compile(r"\|.*|&&?|;|(\d*|&)[<>].*")  # unquoted words that only a shell obeys
-_NO_SHELL = "No shell is used. Put the words into quotes if they are meant as they stand, or run sh -c '...'."
+_NO_SHELL = "The command is run without a shell. Quote these characters to pass them on, or run sh -c '...'."
 _PLACEHOLDER = re.compile(r"\{(\{\w+\})\}|\{(\w+)\}")  # {{word}} stands for {word} itself
 
 
@@ -83,7 +83,7 @@ class Timing:
 
 
 class OutOfTimeError(InputError):
-    """A program took longer than allowed, and was ended."""
+    """A program took longer than allowed and was stopped."""
 
 
 class CrashedError(InputError):
@@ -117,7 +117,9 @@ def arguments(command: str, scene: Scene) -> list[str]:
     except ValueError as error:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
-        raise InputError("--run", command, "a command")
+        raise InputError(
+            "--run", command, "a command", "Write --run './mine {x0} {y0}', for example."
+        )
     # a command with escaped quotes cannot be split into quoted and unquoted words
     with contextlib.suppress(ValueError):
         for word in shlex.split(command, posix=False):
@@ -131,7 +133,7 @@ def arguments(command: str, scene: Scene) -> list[str]:
         if match[2] not in values:
             names = ", ".join(f"{{{name}}}" for name in (*values, "setting"))
             nearest = did_you_mean(match[2], values, "")
-            advice = f"{nearest} Write {{{match[0]}}} for {match[0]} itself."
+            advice = f"{nearest} To pass {match[0]} itself, write {{{match[0]}}}."
             raise InputError("--run", match[0], f"one of {names}", advice.lstrip())
         return values[match[2]]
 
@@ -276,7 +278,7 @@ def _tail(errors: BinaryIO) -> str:
     # the program may still be writing: its place in the file stays
     size = os.fstat(errors.fileno()).st_size
     text = os.pread(errors.fileno(), _TAIL, max(0, size - _TAIL)).decode(errors="replace").strip()
-    return f"It said: {text}" if text else "It said nothing on stderr."
+    return f"Its stderr: {text}" if text else "It printed nothing on stderr."
 
 
 def timed(

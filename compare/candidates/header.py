@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from reference import InputError
+from reference.errors import Described, counted
 
+from .candidate import NO_ROWS
 from .names import Layout, Naming, advice, by_number, given, layout, meaning, units_of
 from .text import SEPARATORS, says_nothing, split, without_end, words
 
@@ -18,7 +20,7 @@ FEW = 2
 # of a line that holds them
 UNITS_LABEL = re.compile(r"(?:units?|einheit(?:en)?)\s*[:=]?[\s,;]+", re.IGNORECASE)
 SI_UNITS = ("", "s", "m", "m/s")
-COMMAS = "Numbers with a decimal comma cannot be told apart between commas: separate the columns by semicolons."
+COMMAS = "If the numbers have decimal commas, separate the columns by semicolons."
 
 
 class HeaderLine(NamedTuple):
@@ -67,7 +69,7 @@ class Header:
         return False
 
     def add(self, number: int, text: str, comment: bool) -> None:
-        """Take a line that is no row.
+        """Add a line that is not a row.
 
         Raises:
             InputError: there are too many before the first row.
@@ -78,12 +80,12 @@ class Header:
         if len(self.lines) > MOST:
             if not comment:
                 where = f"{self.name}: line {number}"
-                expected = "a row of numbers before it"
+                expected = "a row of numbers on an earlier line"
                 raise InputError(where, text[:80], expected, advice(self.needed))
             del self.lines[0]
 
     def layout(self, row: str, separator: str, number: int) -> tuple[Layout, int]:
-        """Return which column stands where, and how many columns there are, from the first row and its line.
+        """Return the layout of the columns and their number, from the first row and its line number.
 
         Raises:
             InputError: no line names the columns, or one does but not all that are needed, and the
@@ -176,20 +178,21 @@ class Header:
                 where = f"{self.name}: line {self.lines[i].number}"
                 got = ", ".join(words_of_line)[:80]
                 expected = f"units below the header of line {line.number}, or a row of numbers"
-                what_to_do = "Units are s, ms, min, h, m, cm, mm, m/s … Write # before a remark."
+                what_to_do = "Units are s, ms, min, h, m, cm, mm, m/s … Begin a comment with #."
                 raise InputError(where, got, expected, what_to_do)
 
     def _unequal(
         self, number: int, count: int, line: HeaderLine, named: int, separator: str
     ) -> InputError:
         """Return the error for a first row with another number of fields than the header."""
-        expected = f"{named} as in the header, line {line.number}"
-        what_to_do = "Name each column, or say --columns."
+        expected = f"{named}, as in the header on line {line.number}"
+        what_to_do = "Name every column in the header or by --columns."
         if count < named:
             what_to_do = "Is the line cut off?"
         if separator == "," and named < count < 2 * named + 1:
             what_to_do = f"{what_to_do} {COMMAS}"
-        return InputError(f"{self.name}: line {number}", f"{count} fields", expected, what_to_do)
+        got = Described(counted(count, "field"))
+        return InputError(f"{self.name}: line {number}", got, expected, what_to_do)
 
     def _named(self, line: HeaderLine, count: int) -> list[str] | None:
         """Return the words of a line that names the columns, or is meant to; None for another."""
@@ -259,9 +262,9 @@ class Header:
         first = lines[0]
         for units in lines[1:]:
             if units != first:
-                got = f"{', '.join(first)} and {', '.join(units)}"
+                got = Described(f"both {', '.join(first)} and {', '.join(units)}")
                 raise InputError(
-                    f"{self.name}: lines of units", got, "one of them", "Leave one out."
+                    f"{self.name}: lines of units", got, "one line of units", "Leave one out."
                 )
         return first
 
@@ -276,7 +279,7 @@ class Header:
             units = units_of(fields)
             if units and not set(units) <= set(SI_UNITS):
                 where = f"{self.name}: line {line.number}"
-                what_to_do = "Write units into the header, or say --units ms,cm."
+                what_to_do = "Write the units into the header, or give them by --units ms,cm."
                 raise InputError(where, line.text[:80], "a unit for each column", what_to_do)
 
     def refuse(self, expected: str) -> InputError:
@@ -288,7 +291,8 @@ class Header:
             if not line.comment:
                 where = f"{self.name}: line {line.number}"
                 return InputError(where, line.text[:80], expected, advice(self.needed))
-        return InputError(self.name, "no header and no rows", expected, advice(self.needed))
+        got = Described("no header and no rows")
+        return InputError(self.name, got, expected, advice(self.needed))
 
     def _no_row_below(self, lines: Sequence[HeaderLine]) -> InputError:
         """Return the error for a header below which no line is a row."""
@@ -297,7 +301,7 @@ class Header:
                 where = f"{self.name}: line {line.number}"
                 return InputError(where, line.text[:80], "a row of numbers")
         why = "All lines are comments." if lines else "Is the output empty?"
-        return InputError(self.name, "no rows", "at least one row", why)
+        return InputError(self.name, NO_ROWS, "at least one row", why)
 
 
 def _columns(way: Sequence[str]) -> set[str]:

@@ -41,7 +41,7 @@ def how(language: str) -> str:
     word = language.strip().lower()
     snippet = next((lines for name, lines in SNIPPETS.items() if word in (name, *lines.also)), None)
     if snippet is None:
-        advice = did_you_mean(word, [*SNIPPETS], "Any text will do.")
+        advice = did_you_mean(word, [*SNIPPETS], "Any other language works too: print a text file.")
         raise InputError("--how", language, in_words([*SNIPPETS]), advice)
     width = max(len(snippet.once), len(snippet.each)) + 2
     return (

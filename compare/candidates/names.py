@@ -1,4 +1,4 @@
-"""Which column stands where: the words of a header, or of `--columns`, as programs use them; units in SI.
+"""The order of columns: the words of a header or of `--columns`, as programs use them; units in SI.
 
 `pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t;
 `vx`, `xdot`, `dx/dt` and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other
@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from reference import InputError
+from reference.errors import Described
 from reference.numbers.precision import Array
 from reference.system.documents import texts_of
 
@@ -73,7 +74,7 @@ UNNAMED = {
 
 @dataclass(frozen=True)
 class Meaning:
-    """Say which column a word of a header names, and in which unit.
+    """The column that a word of a header stands for, and its unit.
 
     Attributes:
         column: t, x, y, z, vx, vy or vz.
@@ -90,7 +91,7 @@ class Meaning:
 
 
 def meaning(word: str, units: dict[str, str]) -> Meaning | None:
-    """Return what a word of a header means; None for a column that is not read.
+    """Return the column and unit that a word of a header stands for; None for a column that is not read.
 
     Args:
         word: as printed.
@@ -127,7 +128,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
         if unit and default and size not in (1, size_of(default, column)):
-            expected = f"no other unit of {column} than {unit}, as its header says"
+            expected = f"{unit}, the unit of {column} in the header, or no unit"
             raise InputError("--units", default, expected)
         return Meaning(column, size * sign, unit or default, rank)
     return None
@@ -228,9 +229,9 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
         unit = _plain_unit(word)
         if unit not in TIMES and unit not in LENGTHS:
             expected = f"units of time or length: {', '.join([*TIMES, *LENGTHS])}"
-            raise InputError("--units", word, expected, "Separate two with a comma.")
+            raise InputError("--units", word, expected, "Separate the two by a comma.")
         if ("t" if unit in TIMES else "x") in units:
-            expected = "one unit of time and one of length at most"
+            expected = "at most one unit of time and one of length"
             raise InputError("--units", ",".join(words), expected)
         if unit in TIMES:
             units["t"] = unit
@@ -241,7 +242,7 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Naming:
-    """Hold the names and units that a user gives to the columns of a file.
+    """The names and units that a user gives for the columns of a file.
 
     Attributes:
         columns: their names in order, as in a header, `-` for one that is not read; empty if the
@@ -259,7 +260,7 @@ class Naming:
 
 @dataclass(frozen=True)
 class Layout:
-    """Where each column stands.
+    """The position of each column.
 
     Attributes:
         places: index of each column that is read, in the order t, x, y, z, vx, vy, vz.
@@ -325,7 +326,7 @@ def layout(
         assert meant is not None
         word = words[place]
         if meant.factor is None:
-            expected = f"a unit of {name} that is known"
+            expected = f"a known unit of {name}"
             raise InputError(f"{where}: {word.strip()}", meant.unit, expected, "Write s, m or m/s.")
         places[name] = place
         if meant.factor != 1:
@@ -363,9 +364,9 @@ def _place_of(
     best = [i for i, rank in ranks.items() if rank == min(ranks.values())]
     if len(best) > 1:
         same = ", ".join(words[i].strip() for i in best)
-        raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
+        raise InputError(where, same, f"one column {name}", "Say which one by --columns.")
     if not best and name in needed:
-        got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
+        got = Described(f"no {name} in {', '.join(word.strip() for word in words)[:80]}")
         what_to_do = "" if where == "--columns" else advice(needed)
         raise InputError(where, got, f"one column {name}", what_to_do)
     return best[0] if best else None
@@ -389,11 +390,11 @@ def _with_line_of_units(
         return replace(meant, factor=None, unit=unit)
 
     if by_header.unit and by_header.factor is not None and abs(by_header.factor) != size:
-        expected = f"{by_header.unit}, as the header says"
+        expected = f"{by_header.unit}, the unit in the header"
         raise InputError(f"{where}: {word.strip()}", unit, expected, "Leave one of them out.")
     default = of_units.get(meant.column)
     if default and size != size_of(default, meant.column):
-        expected = f"no other unit of {meant.column} than {unit}, as its line of units says"
+        expected = f"{unit}, the unit of {meant.column} in the line of units, or no unit"
         raise InputError("--units", default, expected)
     sign = 1 if meant.factor is None or meant.factor > 0 else -1
     return replace(meant, factor=size * sign, unit=unit)
@@ -423,7 +424,7 @@ def units_of(words: Sequence[str]) -> list[str] | None:
 
 
 def given(count: int, naming: Naming) -> Layout:
-    """Return the layout of a file whose columns the user names.
+    """Return the layout of a file whose columns the user has named.
 
     Raises:
         InputError: there are more or fewer names, one is not known, or one that is needed is
@@ -432,12 +433,12 @@ def given(count: int, naming: Naming) -> Layout:
     names = naming.columns
     option = "--columns"
     if len(names) != count:
-        expected = f"a name for each of the {count} columns, - for one that is not read"
+        expected = f"a name for each of the {count} columns, or - for a column to skip"
         raise InputError(option, ",".join(names), expected)
     unknown = [name for name in names if name.strip() not in SKIPPED and meaning(name, {}) is None]
     if unknown:
-        expected = f"names of {', '.join(['t', *COLUMNS])}"
-        what_to_do = "Write - for a column that is not read."
+        expected = f"names among {', '.join(['t', *COLUMNS])}"
+        what_to_do = "Write - for a column to skip."
         raise InputError(option, ", ".join(unknown), expected, what_to_do)
     return layout(names, NEEDED, naming, option)
 
@@ -460,6 +461,6 @@ def by_number(count: int, needed: Sequence[str], naming: Naming) -> Layout | Non
 
 
 def advice(needed: Sequence[str]) -> str:
-    """Return what a header has to name."""
-    more = f" and, if there, {', '.join(COLUMNS[2:])}" if len(needed) > 1 else ""
-    return f"Wanted: {', '.join(needed)}{more}, as a file's first line or --columns names them."
+    """Return the advice which columns a header has to name."""
+    more = f" and optionally {', '.join(COLUMNS[2:])}" if len(needed) > 1 else ""
+    return f"Columns are {', '.join(needed)}{more}, named in the first line or by --columns."

@@ -35,14 +35,14 @@ from typing import IO
 import numpy as np
 
 from reference import InputError
-from reference.errors import checked_path, counted
+from reference.errors import Described, checked_path, counted
 from reference.numbers.precision import Array
 from reference.plain_text import plain as printable
 from reference.scenes.scene import MAX_ROWS
 from reference.system.documents import open_at_once
 
 from .arrays import read_archive, read_array
-from .candidate import Candidate, Deviation, checked_transits
+from .candidate import FEWER_ROWS, Candidate, Deviation, checked_transits
 from .clock import HOW, counted_from, decimal, seconds_of
 from .header import COMMAS, Header
 from .names import NEEDED, Layout, Naming
@@ -85,10 +85,10 @@ def read(
 
     Args:
         source: the file's path.
-        columns: names of its columns in order, `-` for one that is not read; none if a header names
-            them.
-        units: of its times and lengths where no header names them, such as ms and cm; SI units if
-            none.
+        columns: names of its columns in order, `-` for a column to skip; not needed if a header
+            names them.
+        units: units of its times and lengths if no header names them, such as ms and cm; by default
+            SI units.
 
     Raises:
         InputError: the candidate cannot be read; the message names the line.
@@ -99,7 +99,7 @@ def read(
 
 @contextmanager
 def named(field: str) -> Iterator[None]:
-    """Name a field in what is wrong with its file or its command: a baseline is read, and run, as a candidate is."""
+    """Name the right field in errors of a file or a command, such as a baseline, which is read like a candidate."""
     try:
         yield
     except InputError as error:
@@ -149,7 +149,7 @@ def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[IO[
                 _copy_pipe(stream, copy)
                 if not copy.tell() and str(source) != "-":
                     advice = (
-                        "Nobody writes to this pipe: start the program first, or let --run start it"
+                        "No program writes to this pipe: start one first, or let --run start it"
                     )
                     raise OSError(errno.EPIPE, advice)
                 copy.seek(0)
@@ -179,8 +179,8 @@ def _check_size(stream: IO[bytes], name: str) -> None:
     """Refuse a stream that is too long; its position stays."""
     start = stream.tell()
     if stream.seek(0, os.SEEK_END) > MAX_BYTES:
-        got = f"more than {MAX_BYTES} bytes"
-        raise InputError(name, got, f"at most {MAX_BYTES}", "Thin the output out.")
+        got = Described(f"more than {MAX_BYTES} bytes")
+        raise InputError(name, got, f"at most {MAX_BYTES}", FEWER_ROWS)
     stream.seek(start)
 
 
@@ -353,8 +353,9 @@ class _ColumnReader:
             if says_nothing(text):
                 continue
             if "\r" in text:
-                got = "lines that end with CR alone"
-                raise InputError(self.name, got, "LF or CR LF", "Save it with other line ends.")
+                got = Described("lines that end with CR alone")
+                advice = "Save the file with line ends LF."
+                raise InputError(self.name, got, "lines that end with LF or CR LF", advice)
 
             begins = text.lstrip()
             remark = COMMENT.match(begins) if begins[0] in MARKS else None
@@ -375,23 +376,23 @@ class _ColumnReader:
             InputError: it is too long, or one too many, or the file is binary.
         """
         if len(data) > MAX_LINE:
-            got = f"a line of more than {MAX_LINE} bytes"
-            raise InputError(self.name, got, "lines of numbers", "Is it text?")
+            got = Described(f"a line of more than {MAX_LINE} bytes")
+            raise InputError(self.name, got, "lines of numbers", "Is this a text file?")
         if line > MAX_LINES:
-            got = f"more than {MAX_LINES} lines"
-            expected = f"at most {MAX_LINES}, comments and empty ones included"
-            raise InputError(self.name, got, expected, "Thin the output out.")
+            got = Described(f"more than {MAX_LINES} lines")
+            expected = f"at most {MAX_LINES}, comments and empty lines included"
+            raise InputError(self.name, got, expected, FEWER_ROWS)
         binary = None if self.rows else _binary(data)
         if binary is not None:
             kind, advice = binary
-            raise InputError(self.name, kind, "text in UTF-8", advice)
+            raise InputError(self.name, Described(kind), "text in UTF-8", advice)
         text = data.decode("utf-8", "replace").strip(" \r\n\v\f")
         return text.removeprefix("\ufeff") if line == 1 else text
 
     def _take_row(self, text: str, line: int) -> None:
         if len(self.rows) == MAX_ROWS:
-            got = f"more than {MAX_ROWS} rows"
-            raise InputError(self.name, got, f"at most {MAX_ROWS}", "Thin the output out.")
+            got = Described(f"more than {MAX_ROWS} rows")
+            raise InputError(self.name, got, f"at most {MAX_ROWS}", FEWER_ROWS)
         self.rows.append(text)
         self.lines.append(line)
 
@@ -399,7 +400,7 @@ class _ColumnReader:
         try:
             self.transits.append(float(remark.split()[2]))
         except (IndexError, ValueError):
-            expected = "# P, a count, a time in s, a frequency"
+            expected = "# P followed by a count, a time in s and a frequency"
             raise InputError(f"{self.name}: line {line}", f"# {remark[:80]}", expected) from None
 
     def _begins(self, text: str, line: int) -> bool:
@@ -422,7 +423,7 @@ class _ColumnReader:
         if not readings:
             raise refusals[0][1]
         if not self.header.decides and any(share == 1 for share, _ in refusals):
-            got = f"{text[:40]}, which may be one number or two"
+            got = Described(f"{text[:40]}, which may be one number or two")
             expected = "a first line that names the columns"
             advice = f"Write {','.join(self.header.needed)} above it."
             raise InputError(f"{self.name}: line {line}", got, expected, advice)
@@ -451,10 +452,10 @@ class _ColumnReader:
             first = [_value(field) for field in reading.fields(row)]
             second = [_value(field) for field in other.fields(row)]
             if not same_columns or first != second:
-                got = f"{', '.join(first)} or {', '.join(second)} from {row!r}"
-                advice = "Name the columns in a first line, and separate them by semicolons."
+                got = Described(f"{', '.join(first)} or {', '.join(second)} from {row!r}"[:80])
+                advice = "Name the columns in the first line, and separate them by semicolons."
                 where = f"{self.name}: line {line}"
-                raise InputError(where, got[:80], "one way to read it", advice)
+                raise InputError(where, got, "a row that can be read in one way only", advice)
 
     def _sure_mark(self, reading: _TextReading) -> str | None:
         """Return the decimal mark of all numbers if a look at the rows shows it.
@@ -487,11 +488,12 @@ class _ColumnReader:
 
     def _refuse_count(self, reading: _TextReading, i: int) -> None:
         count = len(without_end(split(self.rows[i], reading.separator)))
-        expected = f"{reading.width} as in the first row"
+        expected = f"{reading.width}, as in the first row"
         advice = "Is the line cut off?"
         if count > reading.width:
             advice = COMMAS if reading.separator == "," else "Are there two numbers in one field?"
-        raise InputError(f"{self.name}: line {self.lines[i]}", f"{count} fields", expected, advice)
+        got = Described(counted(count, "field"))
+        raise InputError(f"{self.name}: line {self.lines[i]}", got, expected, advice)
 
     def _spell_plainly(self, reading: _TextReading) -> None:
         """Put the numbers of the columns that are read in place of the rows, with points and separated by blanks.
@@ -543,7 +545,7 @@ class _ColumnReader:
             lines.append(self.lines[i])
 
         if not lines:
-            got = f"no number of {' or '.join(names[1:])} in any row"
+            got = Described(f"no number of {' or '.join(names[1:])} in any row")
             raise InputError(self.name, got, "rows of numbers")
         if lost_times:
             rows = counted(len(lost_times), "row")
@@ -555,11 +557,11 @@ class _ColumnReader:
     def _no_number(self, line: int, name: str, field: str) -> InputError:
         advice = ""
         if THOUSANDS.fullmatch(field):
-            advice = "Write numbers without marks between thousands."
+            advice = "Write numbers without separators between thousands."
         elif name == "t" and re.search(r"\d[:/-]\d", field):
             advice = HOW
         elif name == "t":
-            advice = "Write # before lines that are no rows."
+            advice = "Begin lines that are not rows with #."
         return InputError(f"{self.name}: line {line}: {name}", field[:40], "a number", advice)
 
     def _clock(self, texts: Sequence[str], reading: _TextReading) -> list[str]:
@@ -570,7 +572,7 @@ class _ColumnReader:
                 has.
         """
         if "t" in reading.layout.factors:
-            expected = "a number, as its unit says"
+            expected = "a number, since the column has a unit"
             raise InputError(f"{self.name}: t", texts[0], expected, "Leave the unit out.")
         times = []
         for text, line in zip(texts, self.lines, strict=True):
@@ -590,10 +592,7 @@ class _ColumnReader:
         doubtful = doubtful_number(columns, commas_separate)
         if doubtful is not None:
             mark = "comma" if "," in doubtful else "point"
-            expected = (
-                f"a {mark} that is decimal or one between thousands, "
-                "and some number that shows which"
-            )
+            expected = f"a number whose {mark} is clearly decimal, or clearly separates thousands"
             advice = f"Write {doubtful.replace(',', '.')}0 or {re.sub('[,.]', '', doubtful)}."
             raise InputError(self.name, doubtful, expected, advice)
 
@@ -604,8 +603,8 @@ class _ColumnReader:
             return
         needless = padded(numbers)
         if needless is not None:
-            got = f"{needless} between commas"
-            raise InputError(self.name, got, "whole numbers without needless zeros", COMMAS)
+            got = Described(f"{needless} between commas")
+            raise InputError(self.name, got, "whole numbers without leading zeros", COMMAS)
 
 
 def _value(field: str) -> str:

@@ -46,18 +46,18 @@ def is_number(text: str) -> bool:
 
 
 def is_clock(text: str) -> bool:
-    """Return True for hours:minutes:seconds, with a date before it or without."""
+    """Return True for hours:minutes:seconds, with or without a date before it."""
     return CLOCK.fullmatch(text) is not None or MOMENT.fullmatch(text) is not None
 
 
 def says_nothing(line: str) -> bool:
-    """Return True for a line that has no field, or is drawn."""
+    """Return True for a line without fields, or one drawn with dashes or similar marks."""
     text = line.strip()
     return not text.strip(EMPTY) or ("---" in text and not text.strip(RULE))
 
 
 def is_missing(text: str) -> bool:
-    """Return True for a field that says that there is no number."""
+    """Return True for a field that marks a missing number."""
     return text.lower() in MISSING
 
 
@@ -117,7 +117,7 @@ def words(line: str) -> list[list[str]]:
 
 
 def without_end(fields: list[str]) -> list[str]:
-    """Return fields without the empty ones at the end, but for the first."""
+    """Return fields without the empty ones at the end; the first is kept."""
     end = len(fields)
     while end > 1 and not fields[end - 1].strip():
         end -= 1

@@ -45,7 +45,7 @@ class Runnable:
     out: Path | None = None
 
     def check(self) -> None:
-        """Refuse a command that no experiment can change, and a folder with somebody else's files, before a run.
+        """Refuse, before a run, a command that no experiment can change, and a folder with other files.
 
         Raises:
             InputError: it is one of these.
@@ -62,7 +62,7 @@ class Runnable:
 
     @property
     def step(self) -> float:
-        """The value of {setting}; by default a step in s: a whole part of a grid step, at least 200 a period."""
+        """The value of {setting}; by default a step in s that divides a grid step, at least 200 steps a period."""
         if self.setting is not None:
             return self.setting
         grid_step_s = float(self.scene.exact.grid_step)
@@ -71,11 +71,11 @@ class Runnable:
         return grid_step_s / steps
 
     def words(self, scene: Scene, command: str = "", finer: int = 1) -> list[str]:
-        """Return the words of a run in a scene, {setting} divided by a number; of another version's command."""
+        """Return the words of a run on a scene, with {setting} divided by a number; optionally of another command."""
         return arguments((command or self.command).replace(SETTING, repr(self.step / finer)), scene)
 
     def keep(self, output: BinaryIO, word: str) -> None:
-        """Write what a run has printed into the folder, and set it back to its start."""
+        """Write the output of a run into the folder, and rewind it."""
         if self.out is not None:
             write_file(self.out / f"{word}.txt", output.read(), "--out")
             output.seek(0)

@@ -12,7 +12,7 @@ import numpy as np
 from reference import FoucaultError, InputError, Scene, load_scene
 from reference.commands.progress import progress
 from reference.commands.terminal import stoppable
-from reference.errors import Stopped
+from reference.errors import Described, Stopped
 from reference.numbers.precision import Array
 from reference.plain_text import plain
 
@@ -93,8 +93,8 @@ class Judging:
         """
         motion = APPROXIMATIONS[word]
         if not isinstance(motion, Motion):
-            expected = "an approximation of the motion"
-            advice = "This one gives a number, not a motion."
+            expected = "an approximation that gives a motion"
+            advice = "This one gives a single number. `foucault methods` lists the others."
             raise InputError("--approximation", word, expected, advice)
         return _outcome_of(
             word, scene.id, lambda: self._score_of_motion(motion, scene, word, transits)
@@ -112,7 +112,8 @@ class Judging:
             before = earlier.pop(files.name, without_earlier)
             outcomes.append(self._outcome_of_files(files, before))
         for name in earlier:
-            error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
+            got = Described(f"no file for {name}")
+            error = InputError("--suite", got, f"one, since {self.baseline} has a score of {name}")
             outcomes.append(Outcome(name, name, error=error))
 
         if out is not None:

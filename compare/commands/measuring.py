@@ -1,4 +1,4 @@
-"""Compare measurements with what is proved for uncertain inputs, or passages of a section with the truth."""
+"""Compare measurements with proven intervals for uncertain inputs, or passages of a section with the truth."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _STOPPED = "nothing was written"  # what an interruption leaves
 
 
 def ranges_named(word: str | None) -> Ranges | None:
-    """Return the ranges that a word names, an id or a folder; None if it names none."""
+    """Return the ranges with an id or in a folder; None if there are none."""
     folder = None if word is None else golden_folder(word)
     if folder is None or not (folder / RANGES).is_file():
         return None
@@ -33,7 +33,7 @@ def ranges_named(word: str | None) -> Ranges | None:
 
 
 def ranges_to_prove(scene: Scene, widths: dict[str, str]) -> Ranges:
-    """Return ranges that have no times yet.
+    """Return ranges that are still to be proved, without times.
 
     Raises:
         InputError: an input, or a width.
@@ -61,7 +61,7 @@ def _section_word(section: str, scene: Scene) -> str:
     words = scene.with_values({"run.sections": section}).run.sections or ()
     if len(words) != 1:
         raise InputError(
-            "--section", section, "one section", "Score the passages of each by themselves."
+            "--section", section, "one section", "Score the passages of each section by themselves."
         )
     return words[0]
 

@@ -1,4 +1,4 @@
-"""Shared parts of the commands: comma-separated options and their completion, folders of results, and the end."""
+"""Shared parts of the commands: comma-separated options and their completion, folders of results, the final output."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reference.commands.terminal import emit, option
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
-    """Return what a shell asks for the names that may follow in a comma-separated list that is being typed."""
+    """Return the completion function of a shell for the next name in a comma-separated list."""
 
     def lists(incomplete: str) -> list[str]:
         before, comma, last = incomplete.rpartition(",")
@@ -36,7 +36,7 @@ def method_ids() -> list[str]:
 
 METHODS = option(
     "--methods",
-    "Ids of methods, as `foucault methods` lists them (default: all that have runs for it).",
+    "Ids of methods, as `foucault methods` lists them (default: all that apply).",
     "A,B,…",
     completion_of_lists(method_ids),
 )
@@ -62,7 +62,7 @@ def listed(text: str | None, field: str) -> list[str] | None:
         return None
     words = [word.strip() for word in text.split(",") if word.strip()]
     if not words:
-        raise InputError(field, text, "at least one word", "Separate several with commas.")
+        raise InputError(field, text, "at least one word", "Separate words by commas.")
     return words
 
 
@@ -72,7 +72,7 @@ def numbers(text: str, field: str) -> list[float]:
 
     values = parsed(text.split(","), float)
     if not values or not all(0 < value < float("inf") for value in values):
-        raise InputError(field, text, "positive numbers", "Separate several with commas.")
+        raise InputError(field, text, "positive numbers", "Separate numbers by commas.")
     return values
 
 
@@ -85,7 +85,7 @@ def check_positive(option: str, value: float | None, unit: str = "seconds") -> N
 def programs_of(
     run: Sequence[str] | None, names: Sequence[str] | None, scene: Scene
 ) -> dict[str, str]:
-    """Return the commands of --run by the names that they have; refuse any that cannot be run with a scene's values."""
+    """Return the commands of --run by name; refuse any that cannot be run with a scene's values."""
     from ..candidates.external import SETTING, arguments
     from ..methods import named_programs
 
@@ -95,10 +95,10 @@ def programs_of(
 
 
 def resumes(folder: Path | None) -> str:
-    """Return what becomes of a campaign that is stopped, whose results go into a folder (None: nowhere)."""
+    """Return a sentence on what becomes of a stopped campaign whose results go into a folder (None: nowhere)."""
     if folder is None:
-        return "nothing was kept; with --out, the same command would go on where it stopped"
-    return "the same command with the same --out goes on where it stopped"
+        return "nothing was kept; with --out DIR the same command could resume"
+    return "the same command with the same --out resumes"
 
 
 def announce(text: str) -> None:

@@ -29,7 +29,7 @@ def paper(
 ) -> None:
     """Judge every formula of the source papers.
 
-    Every formula and number is computed again; with --out the figures are drawn again too.
+    Every formula and number is recomputed; with --out the figures are redrawn too.
     """
     from ..papers import build, rows
     from ..report.folder import PAGE
@@ -75,7 +75,9 @@ def _parameter(letter: str, switch: Switch) -> Parameter:
     )
 
 
-_EXACT = Annotated[bool, typer.Option("--exact", help="Print the same lines from the reference.")]
+_EXACT = Annotated[
+    bool, typer.Option("--exact", help="Print the same lines with the reference's numbers.")
+]
 
 # what typer reads: one keyword for each switch of the table, then --exact
 pend.__signature__ = Signature([  # type: ignore[attr-defined]

@@ -35,21 +35,23 @@ SOURCE = typer.Argument(
     help="A scene, a dataset, or the file of a program's output; - is stdin.",
     autocompletion=completion(lambda: {*scene_ids(), *seals()}),
 )
-OUT = option("--out", "The picture: .svg, .png or .pdf (default: the name, and .svg).", "FILE")
+OUT = option(
+    "--out", "The picture: .svg, .png or .pdf (default: the source's name with .svg).", "FILE"
+)
 WHAT = option(
     "--what",
-    f"Which of {', '.join(PICTURES)} to draw, side by side (default: all that there are).",
+    f"Which of {', '.join(PICTURES)} to draw, side by side (default: all available).",
     "A,B,…",
     names=completion_of_lists(lambda: PICTURES),
 )
 PAGES = option("--out", "Write the pages into this folder (extra plot).", "DIR")
-DATA = option("--data", "The folder of the datasets (default: those that ship).", "DIR")
+DATA = option("--data", "The folder of the datasets (default: the shipped ones).", "DIR")
 STUDIES = option(
     "--studies",
     "Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).",
     "DIR",
 )
-FILES = option("--files", "Link files to URL/DATASET/FILE (default: name them alone).", "URL")
+FILES = option("--files", "Link files to URL/DATASET/FILE (default: no links).", "URL")
 
 
 def plot(
@@ -61,7 +63,7 @@ def plot(
 ) -> None:
     """Draw a motion: path, swing plane, transits.
 
-    A scene without a dataset is solved first. A file alone gives path and swing plane.
+    A scene without a dataset is solved first. For a file, path and swing plane are drawn.
     """
     from ..report.drawing import check_target
     from ..report.folder import write_file
@@ -76,7 +78,7 @@ def plot(
     available = list(panels(motion))
     missing = next((word for word in requested or () if word not in available), None)
     if missing is not None:
-        raise InputError("--what", missing, f"what there is of {source}: {in_words(available)}")
+        raise InputError("--what", missing, f"a picture of {source}: {in_words(available)}")
     write_file(target, motion_picture(motion, requested or available, target), "--out")
     typer.echo(f"{target}: the picture")
 
@@ -111,7 +113,7 @@ def atlas(
     files: Annotated[str, FILES] = "",
     as_json: AsJson = False,
 ) -> None:
-    """Make a page over all golden datasets.
+    """Make web pages of all golden datasets.
 
     The page of a scene has pictures, bounds and files, judges a program's output dropped on it, and plays the motion
     where the scene has a golden function.

@@ -26,6 +26,7 @@ from reference.commands.terminal import (
     scene_argument,
     widths_by_name,
 )
+from reference.errors import NOTHING, Described
 
 from .options import announce, check_positive, listed
 
@@ -73,7 +74,7 @@ class ScoreOptions:
 
     scene_word: Annotated[
         str | None,
-        scene_argument("A scene's id, or the path of a TOML file; with --suite none."),
+        scene_argument("A scene's id, or the path of a TOML file; not with --suite."),
     ] = None
     candidates: Annotated[
         list[str] | None,
@@ -98,7 +99,7 @@ class ScoreOptions:
     ] = None
     columns: Annotated[
         str | None,
-        option("--columns", "A file's columns in order; - for one that is not read.", "t,x,y,…"),
+        option("--columns", "A file's columns in order; - skips one.", "t,x,y,…"),
     ] = None
     units: Annotated[
         str | None,
@@ -106,11 +107,15 @@ class ScoreOptions:
     ] = None
     transits: Annotated[
         str | None,
-        option("--transits", "Score times of xdot = 0 too, or alone: in its column t.", "FILE"),
+        option(
+            "--transits",
+            "Also (or only) score times of xdot = 0: column t.",
+            "FILE",
+        ),
     ] = None
     section: Annotated[
         str | None,
-        option("--section", "--transits are passages of this section: 'gate 30'.", "WORD"),
+        option("--section", "Take --transits as passages of this section: 'gate 30'.", "WORD"),
     ] = None
     run: Annotated[
         str | None,
@@ -131,7 +136,7 @@ class ScoreOptions:
     ] = None
     experiments: Annotated[
         bool,
-        option("--experiments", "Run it up to eight times more, to measure why it is off."),
+        option("--experiments", "Run it up to eight more times, to explain its error."),
     ] = False
     approximation: Annotated[
         str | None,
@@ -147,7 +152,7 @@ class ScoreOptions:
         str | None,
         option(
             "--baseline",
-            "Say what changed since a file, --json document, command or suite of an earlier version.",
+            "Report changes since an earlier version: its file, --json document, command or suite.",
             "FILE",
         ),
     ] = None
@@ -161,7 +166,7 @@ class ScoreOptions:
     ] = None
     covers: Annotated[
         float | None,
-        option("--covers", "Demand rows up to this share of the span (default: any).", "SHARE"),
+        option("--covers", "Require rows to this share of the span (default: any).", "SHARE"),
     ] = None
     t_end: Annotated[
         str | None,
@@ -195,7 +200,7 @@ class ScoreOptions:
     ] = None
     as_model: Annotated[
         bool,
-        option("--as-model", "Count agreement with a named simpler model."),
+        option("--as-model", "Accept agreement with a named simpler model."),
     ] = False
     no_diagnosis: Annotated[
         bool,
@@ -228,7 +233,7 @@ class ScoreOptions:
 
     @cached_property
     def named_ranges(self) -> Ranges | None:
-        """The ranges that SCENE names; None if it names a scene, or with --suite.
+        """The ranges that SCENE names; None if it names a scene, or if --suite is given.
 
         Raises:
             InputError: they cannot be read.
@@ -246,7 +251,7 @@ class ScoreOptions:
         """
         if self.scene_word is None:
             raise InputError(
-                "SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them."
+                "SCENE", NOTHING, "a scene's id, or --suite DIR", "`foucault scenes` lists the ids."
             )
         if self.named_ranges is not None:
             return self.named_ranges.scene
@@ -378,9 +383,8 @@ def _check_standard_input(options: ScoreOptions) -> None:
     """
     files = [*(options.candidates or ()), options.transits]
     if files.count("-") > 1:
-        raise InputError(
-            "CANDIDATE", "- more than once", "standard input once", "It can be read only once."
-        )
+        got = Described("- more than once")
+        raise InputError("CANDIDATE", got, "- once", "Standard input can be read only once.")
 
 
 def _check_values(options: ScoreOptions) -> None:
@@ -427,7 +431,7 @@ def _outcomes_of_scene(options: ScoreOptions, judging: Judging) -> list[Outcome]
     outcomes = list(_outcomes(options, judging))
     if not outcomes:
         expected = "a file, - for stdin, --run, --transits or --approximation"
-        raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
+        raise InputError("CANDIDATE", NOTHING, expected, "Say what to score.")
 
     error = outcomes[0].error
     is_reported = options.github or options.junit
@@ -524,7 +528,7 @@ def _compare_with_ranges(options: ScoreOptions, ranges: Ranges, naming: Naming) 
     files = options.candidates or []
     if not files and options.transits is None:
         expected = "a file, - for stdin, or --transits"
-        raise InputError("CANDIDATE", "nothing", expected, "Name what was measured.")
+        raise InputError("CANDIDATE", NOTHING, expected, "Say where the measurements are.")
 
     passages = None
     if options.transits is not None:
@@ -546,7 +550,7 @@ def _compare_passages(options: ScoreOptions, naming: Naming) -> None:
         raise InputError(
             "CANDIDATE",
             options.candidates[0],
-            "no file beside that of --transits",
+            "the file of --transits alone",
             "Put all passages into one file: "
             "`foucault score SCENE --transits FILE --section WORD`.",
         )

@@ -58,18 +58,16 @@ OF_APPROXIMATIONS = dict.fromkeys(
 )
 
 PRECISIONS = option(
-    "--precisions", "Bits: measure run time against digits at these precisions.", "53,113,…"
+    "--precisions", "Measure run time against digits at these precisions, in bits.", "53,113,…"
 )
 APPROXIMATIONS = option(
     "--approximations",
-    "Study the source papers' approximations instead: where each stops being good.",
+    "Study the source papers' approximations instead: how far each is accurate.",
 )
 CANDIDATES = option(
-    "--candidates", "Put a file of somebody's output beside the methods. May be repeated.", "FILE"
+    "--candidates", "Also compare the file of a program's output. May be repeated.", "FILE"
 )
-CPU = option(
-    "--cpu", "CPU seconds that each file of --candidates took; - where nobody knows.", "S,-,…"
-)
+CPU = option("--cpu", "CPU seconds that each file of --candidates took; - if unknown.", "S,-,…")
 SETTINGS = option("--settings", f"Values of {{setting}} in --run (default: {STEPS_S}).", "S,S,…")
 T_END = option(
     "--t-end", "End of the run in s (default: the scene's; at most 14400 with --precisions).", "S"
@@ -83,7 +81,7 @@ SCENES = option(
     completion_of_lists(scene_ids),
 )
 STABILITY_LIMIT = option("--limit", "Allow one run this many CPU seconds.", "S")
-LONG = option("--long", "Also measure how errors grow over 30 days (takes minutes more).")
+LONG = option("--long", "Also measure how errors grow over 30 days (takes several minutes more).")
 
 
 @dataclass(frozen=True)
@@ -136,9 +134,7 @@ STUDY_CONFLICTS = [
     ),
     Conflict("--name --settings", "without --run", lambda options: not options.run),
     Conflict("--cpu", "without --candidates", lambda options: not options.candidates),
-    Conflict(
-        "--settings", "with a --run that has no {setting}", lambda options: not _varied(options)
-    ),
+    Conflict("--settings", "without {setting} in --run", lambda options: not _varied(options)),
 ]
 STABILITY_CONFLICTS = [
     Conflict("--name", "without --run", lambda options: not options.run),
@@ -235,7 +231,7 @@ def _study_approximations(scene: Scene, options: StudyOptions) -> None:
 def stability(options: StabilityOptions) -> None:
     """Run methods, and your program, on the difficult scenes.
 
-    For each: digits kept, or the way it failed; with the same --out a study resumes.
+    For each run: digits kept, or how it failed; with the same --out a study resumes.
     """
     refuse_conflicts(options, STABILITY_CONFLICTS)
     from ..report.stability_page import REPORT, document_of

@@ -1,4 +1,4 @@
-"""The files of a suite: a folder whose files are named by their scenes, such as paris.csv."""
+"""The files of a suite: a folder whose files are named after scenes, such as paris.csv."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from reference import InputError
+from reference.errors import Described, in_words
 
 _SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")
 _TRANSITS = ".transits"
@@ -32,13 +33,13 @@ class SuiteFiles:
 
 
 def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
-    """Return the files of a folder by their scenes, sorted.
+    """Return the files of a folder, sorted by scene.
 
     Raises:
         InputError: it is no folder, holds no candidates, or two for one scene.
     """
     if not folder.is_dir():
-        advice = "Its files are named by their scenes: paris.csv, hard.npz."
+        advice = "Name its files after the scenes: paris.csv, hard.npz."
         raise InputError(option, str(folder), "a folder", advice)
 
     rows: dict[str, Path] = {}
@@ -49,14 +50,14 @@ def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
         files = transits if path.stem.endswith(_TRANSITS) else rows
         name = path.stem.removesuffix(_TRANSITS)
         if name in files:
-            got = f"{files[name].name} and {path.name}"
-            raise InputError(option, got, "one file for a scene")
+            got = Described(f"both {files[name].name} and {path.name}")
+            raise InputError(option, got, "one file for each scene", "Remove one of them.")
         files[name] = path
 
     names = sorted(rows.keys() | transits.keys())
     if not names:
-        expected = f"files named by their scenes, with one of {', '.join(_SUFFIXES)}"
-        advice = "For paris: paris.csv, and paris.transits.csv if you like."
+        expected = f"files named after scenes, ending in {in_words(_SUFFIXES)}"
+        advice = "For paris: paris.csv, and paris.transits.csv for its transits, if you have them."
         raise InputError(option, str(folder), expected, advice)
     return [
         SuiteFiles(_scene_word(folder, name), rows.get(name), transits.get(name)) for name in names

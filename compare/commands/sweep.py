@@ -27,6 +27,7 @@ from reference.commands.terminal import (
     scene_argument,
     stoppable,
 )
+from reference.errors import NOTHING
 from reference.scenes.fields import LEVELS
 from reference.status import Status
 from reference.system.workers import usable_cores
@@ -44,7 +45,7 @@ _NO_GRID = dict.fromkeys(
 )
 
 SCENE = scene_argument(
-    "A scene's id, or the path of a TOML file; without it, go on with the sweep in --out.",
+    "A scene's id, or the path of a TOML file; without it, resume the sweep in --out.",
     "[SCENE]",
 )
 OVER = option(
@@ -52,7 +53,11 @@ OVER = option(
     "Vary a field: START:STOP:STEP, or V1,V2,…, or @FILE.csv; several give all combinations.",
     "KEY=VALUES",
 )
-ROWS = option("--rows", "Instead: CSV or Parquet, a column for each field, a row a scene.", "FILE")
+ROWS = option(
+    "--rows",
+    "Instead of --over: a CSV or Parquet file, with a column for each field and a row for each scene.",
+    "FILE",
+)
 WANT = option(
     "--want",
     "frequency, precession, transits, state, amplitude, all of these (default), transit-times.",
@@ -60,20 +65,24 @@ WANT = option(
 )
 LEVEL = option(
     "--level",
-    "Above computed, every row goes through the solver.",
+    "Level of trust; above computed, the solver solves every row.",
     "L",
     names=completion(lambda: LEVELS),
 )
 DIGITS = option(
-    "--digits", "Significant digits of every row, by the solver (default: those of double).", "D"
+    "--digits",
+    "Significant digits; the solver then solves every row (default: double precision).",
+    "D",
 )
-TOLERANCE = option("--tolerance", "Solve rows again whose position may be off by more, in m.", "M")
+TOLERANCE = option(
+    "--tolerance", "Solve rows again whose estimated position error is larger, in m.", "M"
+)
 ENGINE = option("--engine", "Solve the rows with this engine (default: the fastest).", "E")
 AUDIT = option(
     "--audit", "Solve N rows again in 28 digits (default: with --out a thousandth, else none).", "N"
 )
 OUT = option(
-    "--out", "Write the rows into this folder, in Parquet; the same command goes on.", "DIR"
+    "--out", "Write the rows into this folder, in Parquet; the same command resumes.", "DIR"
 )
 PLOT = option("--plot", "Draw frequency and precession: .svg, .png or .pdf.", "FILE")
 
@@ -104,7 +113,7 @@ class SweepOptions:
 CONFLICTS = [
     Conflict(
         "--over --rows --set --t-end --want --section --level --digits --tolerance --engine --audit",
-        "without SCENE, when a sweep is gone on with",
+        "without SCENE, when a sweep is resumed",
         lambda options: options.scene_word is None,
     ),
 ]
@@ -151,7 +160,7 @@ def _request(options: SweepOptions) -> Request:
 
     if options.scene_word is None:
         if options.out is None:
-            raise InputError("SCENE", "nothing", "a scene, or --out DIR with a sweep to go on with")
+            raise InputError("SCENE", NOTHING, "a scene, or --out DIR with a sweep to resume")
         return Store.opened(options.out).request
 
     sections = ",".join(options.section) if options.section else None
@@ -184,7 +193,7 @@ def _run(request: Request, options: SweepOptions) -> Swept:
     if out is None:
         kept = "nothing was kept; give --out DIR"
     else:
-        kept = f"what is done is in {out}: `foucault sweep --out {out}` goes on"
+        kept = f"finished rows are in {out}: `foucault sweep --out {out}` resumes"
     with stoppable(kept), progress() as show:
         # the audit is done on one core, after the rows on all
         workers = options.workers or usable_cores()

@@ -24,6 +24,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from reference import InputError
+from reference.errors import counted
 from reference.system.imports import Registry
 
 from .external import LONGEST_NAME, file_name
@@ -35,7 +36,7 @@ METHODS: Mapping[str, Method] = Registry(
 
 
 def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[str, str]:
-    """Return the commands by the names that a study calls them by.
+    """Return the commands by their names in a study.
 
     Args:
         commands: of programs of the user's own, as `candidates.external.arguments` accepts them.
@@ -50,8 +51,8 @@ def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[s
         raise InputError(
             "--name",
             ", ".join(names),
-            f"one name for each --run, so {len(commands)}",
-            "Or give none.",
+            f"{counted(len(commands), 'name')}, one for each --run",
+            "Or give no --name.",
         )
     programs: dict[str, str] = {}
     for command, name in zip(commands, names or map(file_name, commands), strict=True):
@@ -60,7 +61,7 @@ def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[s
         if name in programs or name in METHODS:
             owner = "another --run" if name in programs else "a method"
             raise InputError(
-                "--name", name, f"a name that {owner} does not have", "Give each --run a --name."
+                "--name", name, f"a name other than that of {owner}", "Give each --run a --name."
             )
         programs[name] = command
     return programs

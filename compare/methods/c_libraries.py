@@ -1,4 +1,4 @@
-"""Boost odeint, GSL, CVODE and ARKODE as their own users call them: a program in C++, of which no Python is a part.
+"""Boost odeint, GSL, CVODE and ARKODE as their users call them: from a program in C++, without Python.
 
 They stand beside the same codes behind a wrapper. The program is the traced equations and the
 library's part; it is compiled for the scene's equations once, and kept by its text, the compiler
@@ -163,7 +163,7 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
                     (line for line in ran.stderr.splitlines() if "error" in line), "no message"
                 )
                 raise IntegrationError(
-                    f"a program for {library.name} does not compile here: {first}"
+                    f"this machine cannot compile a program that uses {library.name}: {first}"
                 )
             made.replace(path)
 

@@ -24,7 +24,7 @@ SAME_TIME = 1e-9
 
 
 def file_name(command: str) -> str:
-    """Return the name of the file that a command runs, shortened: of a script, not of the language that it is in."""
+    """Return the shortened name of the file that a command runs: the script, not its interpreter."""
     words = shlex.split(command)
     script = next((word for word in words if Path(word).suffix.lower() in SCRIPTS), words[0])
     return shortened(Path(script).name, LONGEST_NAME)

@@ -146,7 +146,7 @@ def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
 
 
 def steps_between(times: Array, step: float) -> Any:
-    """Return the number of steps that lead to each time from the one before (0 for the first), shape (rows,)."""
+    """Return the number of steps from the previous time to each time (0 for the first), shape (rows,)."""
     counts = np.ceil(np.diff(times, prepend=times[0]) / step * (1 - ROUNDING)).astype(np.int64)
     counts[1:] = np.maximum(counts[1:], 1)
     return counts

@@ -1,4 +1,4 @@
-"""Compiled libraries: where their headers are here and of which version, and what they write to stdout and stderr.
+"""Compiled libraries: the folder and version of their headers, and what they write to stdout and stderr.
 
 Looked into are the folders of the variables CPATH and CPLUS_INCLUDE_PATH, which compilers obey as
 well, then this Python's environment, then the system. What they write is captured below Python's
@@ -46,14 +46,14 @@ class Library:
 
     @property
     def folder(self) -> Path | None:
-        """The folder of its headers; None if they are not here."""
+        """The folder of its headers; None if it is not installed."""
         return next(
             (folder for folder in include_folders() if (folder / self.header).is_file()), None
         )
 
     @property
     def missing(self) -> str | None:
-        """Return None if programs that use it can be compiled here, otherwise what is missing and what brings it."""
+        """Return None if programs that use it can be compiled here, otherwise what is missing and how to install it."""
         if compiler() is None:
             return "not installed: a C++ compiler, which the variable CXX may name"
         return (
@@ -62,7 +62,7 @@ class Library:
 
     @property
     def version(self) -> str | None:
-        """Return its version as the headers have it; None if they are not here."""
+        """Return its version according to its headers; None if it is not installed."""
         if self.folder is None:
             return None
         text = (self.folder / self.version_file).read_text(errors="replace")
@@ -71,7 +71,7 @@ class Library:
 
 
 def compiler() -> list[str] | None:
-    """Return the words that call the C++ compiler; None if there is none."""
+    """Return the command of the C++ compiler as words; None if there is none."""
     words = shlex.split(os.environ.get("CXX", "")) or ["c++"]
     return words if shutil.which(words[0]) else None
 
@@ -87,7 +87,7 @@ def include_folders() -> list[Path]:
 
 
 def library_folders() -> list[Path]:
-    """Return the folders of shared libraries that a compiler does not look into by itself, or a program does not."""
+    """Return the folders of shared libraries that a compiler, or a compiled program, does not search by default."""
     named = os.environ.get("LIBRARY_PATH", "").split(os.pathsep)
     return [*(Path(word) for word in named if word), Path(sys.prefix) / "lib"]
 

@@ -38,7 +38,7 @@ def prepare(problem: Problem, setting: float) -> Work:
 
 
 def precision_runs(bits: Sequence[int]) -> list[tuple[str, float]]:
-    """Return the runs at those precisions that the engine has, in the form of the equations that it computes in."""
+    """Return the runs at the precisions that the engine supports, in the engine's formulation."""
     from reference.engines.registry import engines
 
     limbs = engines()["limbs"]

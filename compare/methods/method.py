@@ -224,7 +224,7 @@ def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any)
 
 
 def leading(flags: npt.ArrayLike) -> int:
-    """Return how many rows stand before the first whose flag is false."""
+    """Return the number of rows before the first whose flag is false."""
     return int(np.argmin(np.append(flags, False)))
 
 

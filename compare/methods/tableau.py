@@ -99,7 +99,7 @@ def fractions(row: str) -> Vector:
 
 
 def triangle(*rows: str) -> Matrix:
-    """Return rows of exact numbers."""
+    """Return the rows of a triangle of exact numbers."""
     return tuple(map(fractions, rows))
 
 
@@ -112,7 +112,7 @@ def parts(table: dict[str, str | list[str]]) -> dict[str, Any]:
 
 
 class Term(NamedTuple):
-    """A tree, or an argument that an f has by one: its power of h, and its values in the solution and in the stages.
+    """A rooted tree, or an argument of f that belongs to one: its power of h, its values in solution and stages.
 
     Attributes:
         order: of a tree, the power of h that it has in y'; of an argument, what it adds to that.

@@ -1,1 +1,1 @@
-"""Quantities that an observer reads off a motion: rest position, swing plane, apsides, frequency, precession."""
+"""Quantities that an observer measures: rest position, swing plane, apsides, frequency, precession."""

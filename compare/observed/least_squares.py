@@ -1,4 +1,4 @@
-"""Least squares: by Gauss-Newton the numbers of a model with which it leaves least of some rows; power laws."""
+"""Least squares: Gauss-Newton fits of a model's parameters, and fits of power laws."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError
+from reference.errors import Described
 from reference.numbers.precision import Array
 
 Numbers = npt.NDArray[Any]  # real or complex
@@ -20,19 +21,19 @@ LEAST_POINTS = 3  # a fit with a standard error needs at least three
 
 
 def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbers:
-    """Return the least squares solution of `matrix` times it = `right`.
+    """Return the least-squares solution x of matrix x = right.
 
     Raises:
         LinAlgError: a number is not finite. LAPACK would print that on stdout, where a JSON
             document may stand.
     """
     if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
-        raise np.linalg.LinAlgError("numbers that are not finite")
+        raise np.linalg.LinAlgError("the linear equations have numbers that are not finite")
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=rcond)[0])
 
 
 def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers:
-    """Return the change of numbers by which slopes come nearest to what is left.
+    """Return the change of the parameters that minimises the linearised residual.
 
     Args:
         slopes: what the rows change by with each number, shape (rows, numbers); all are brought to
@@ -52,7 +53,7 @@ def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers
 
 
 def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges: Numbers) -> Model:
-    """Return a model, for `gauss_newton`, whose slopes are taken by differences.
+    """Return a model for `gauss_newton` whose derivatives are finite differences.
 
     Args:
         rows_of: returns the rows that numbers make; NaN where they make none.
@@ -75,7 +76,7 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
 def gauss_newton(
     model: Model, start: Numbers, *, steps: int, gain: float, strays: bool = False
 ) -> tuple[Numbers, float]:
-    """Return the numbers that leave least, and the norm of what they leave.
+    """Return the parameters that minimise the residual, and the norm of that residual.
 
     Infinity where the first leave no numbers.
 
@@ -155,8 +156,9 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     """
     points = [(math.log(a), math.log(b)) for a, b in zip(x, y, strict=True) if a > 0 and b > 0]
     if len({u for u, _ in points}) < 2 or len(points) < LEAST_POINTS:
-        got = f"{len(points)} with x > 0 and y > 0"
-        raise InputError("points", got, f"at least {LEAST_POINTS}, not all at the same x")
+        got = Described(f"{len(points)} with x > 0 and y > 0")
+        expected = f"at least {LEAST_POINTS}, with different values of x"
+        raise InputError("points", got, expected)
     logs_x, logs_y = zip(*points, strict=True)
     exponent, constant = statistics.linear_regression(logs_x, logs_y)
     residuals = [v - constant - exponent * u for u, v in points]
@@ -174,7 +176,7 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
 
 
 def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
-    """Return times and the largest error up to each, thinned to at most `parts` points equally far apart in log t.
+    """Return times and the largest error up to each, thinned to at most `parts` points, equidistant in log t.
 
     Args:
         t: times in s, above zero, increasing, shape (rows,), at least one.

@@ -1,4 +1,4 @@
-"""The swing plane of samples in double: its highest points, frequency and precession. A solved scene: solver/swing.py.
+"""The swing plane of sampled states: highest points, frequency, precession. Of a solved scene: solver/swing.py.
 
 A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its
 rest position. Let Z = X + iY be the displacement in the plane at right angles to the plumb line (X
@@ -65,7 +65,7 @@ class Gauge:
         square = tension(hanging, (0, 0, 0), start.k) + turn**2
         if not square > 0:
             raise UnreachableError(
-                "nothing pulls the bob back to its rest position: there is no swing to measure."
+                "no force pulls the bob back to its rest position, so there is no swing to measure."
             )
         east, north, up = hanging if rest is None else scaled(rest, start.k.length)
         return cls(
@@ -115,7 +115,7 @@ def rest_in_metres(scene: Scene) -> Array:
 
 
 def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
-    """Return times in s and azimuths in rad (unwrapped modulo π) of the largest distances from the rest position.
+    """Return times in s and azimuths in rad (unwrapped modulo π) of the apsides, the maxima of the distance from rest.
 
     Args:
         gauge: of the rest position.
@@ -163,13 +163,13 @@ def frequency(scene: Scene, swings: int = 50) -> float:
     times, _ = _apsides_of(scene, gauge, (swings + 1) * gauge.period)
     if len(times) < 3:
         raise UnreachableError(
-            "the bob does not swing: it has no largest distances from its rest position."
+            "the bob does not swing: its distance from the rest position has no maximum."
         )
     return float((len(times) - 1) / (2 * (times[-1] - times[0])))
 
 
 def precession_period(scene: Scene, longest: float = 1e6) -> float:
-    """Return the time in s in which the swing plane of the full model turns by 360°: twice that of its first half turn.
+    """Return the time in s in which the full model's swing plane turns by 360°: twice that of its first half turn.
 
     Raises:
         UnreachableError: it does not turn by 180° within `longest` seconds.

@@ -44,7 +44,7 @@ Report = Callable[[int, int, str], None]
 
 
 def declared() -> list[Check]:
-    """Return every declared row, in the order of print."""
+    """Return every declared row, in the order in which they are printed."""
     return [check for name in SECTIONS for check in import_module(f".{name}", __name__).checks()]
 
 

@@ -1,4 +1,4 @@
-"""How a printed line is judged: a row declares the print and how to compute the truth; its verdict is computed.
+"""How a printed formula is judged: a row declares it and how to compute the truth; the verdict is computed.
 
 - `Identity`: an equals sign in print. Both sides are evaluated at random points with 60 digits.
 - `Approximate`: an "≈" in print. Its error is taken at the paper's own numbers, and its order is
@@ -57,7 +57,7 @@ class JudgedRow:
 
 
 class UnexplainedError(ValueError):
-    """Neither the print nor its declared correction agrees with the truth."""
+    """Neither the printed formula nor its declared correction agrees with the truth."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Check(ABC):
         """Judge the printed line."""
 
     def judged(self, recomputed: str, verdict: Verdict, **more: str) -> JudgedRow:
-        """Return the row with a verdict and with what belongs to it.
+        """Return the row with its verdict and the facts that support it.
 
         The remark is the declared one unless given.
         """
@@ -91,7 +91,7 @@ class Check(ABC):
 
 
 def section(prefix: str, place: str, *rows: Check) -> list[Check]:
-    """Return rows with their whole ids and places, declared with the end of each: "13" at "(13)", or at ""."""
+    """Return rows with full ids and places, which are declared by their ends: "13" at "(13)", or at ""."""
     spaces = ("" if row.place[:1] in ("", ",") else " " for row in rows)
     return [
         replace(row, id=prefix + row.id, place=place + s + row.place)
@@ -136,7 +136,7 @@ class Identity(Check):
         if gap < ZERO_BELOW:
             if self.corrected is not None:
                 raise UnexplainedError(
-                    f"{self.id}: the print is right, yet a correction is declared"
+                    f"{self.id}: the printed formula is right, although a correction is declared"
                 )
             return self.judged(recomputed, "exact")
         if (
@@ -144,7 +144,8 @@ class Identity(Check):
             or largest_gap([self.corrected(p) for p in sample], truth) >= ZERO_BELOW
         ):
             raise UnexplainedError(
-                f"{self.id}: the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
+                f"{self.id}: the printed formula has a relative error of {shown(gap, 3)}, "
+                "and no declared correction removes it"
             )
         note = f"as printed {shown(printed[0], 6)}"
         remark = f"{self.remark} ({note})" if self.remark else note
@@ -210,7 +211,7 @@ class PrintedNumber(Check):
         return int(Decimal(self.numeral).as_tuple().exponent)
 
     def fits(self, value: Any) -> str:
-        """Return how the numeral follows from a value: "equal", "rounded", "cut off", or "" if it does not."""
+        """Return how the printed number follows from a value: "equal", "rounded", "cut off", or "" if it does not."""
         if value == self.number:
             return "equal"
         left = (value - self.number) / MP.mpf(10) ** self.last_place
@@ -219,7 +220,7 @@ class PrintedNumber(Check):
         return "cut off" if 0 < left * MP.sign(value) < 1 else ""
 
     def row(self) -> JudgedRow:
-        """Judge the number: equal, reproduced, near enough for an "about", or a misprint."""
+        """Judge the number: equal, reproduced, close enough for an "about", or a misprint."""
         value = self.value()
         how, recomputed = self.fits(value), shown(value)
         if how in ("equal", "rounded"):
@@ -247,7 +248,7 @@ class PrintedNumber(Check):
 
 @dataclass(frozen=True)
 class Answer:
-    """The result of a statement's computation: whether it holds, and the number that decides."""
+    """The result of checking a statement: whether it is true, and the number that decides."""
 
     holds: bool
     recomputed: str
@@ -272,13 +273,13 @@ class Statement(Check):
         if finding.holds:
             if self.corrected is not None:
                 raise UnexplainedError(
-                    f"{self.id}: the sentence holds, yet a correction is declared"
+                    f"{self.id}: the sentence is true, although a correction is declared"
                 )
             if finding.error:
                 return self.judged(finding.recomputed, "approximation", error=finding.error)
             return self.judged(finding.recomputed, "reproduced" if self.by_run else "exact")
         if self.corrected is None or not self.corrected():
             raise UnexplainedError(
-                f"{self.id}: neither the sentence nor a declared correction holds"
+                f"{self.id}: neither the sentence nor a declared correction is true"
             )
         return self.judged(finding.recomputed, "misprint", correction=self.correction)

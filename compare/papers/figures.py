@@ -1,4 +1,4 @@
-"""Figures 1 to 9 of Mathar's paper from runs of the reference: panels above one another, lines and captions."""
+"""Figures 1 to 9 of Mathar's paper from runs of the reference: stacked panels, lines and captions."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from reference import InputError, load_scene
+from reference.errors import Described
 from reference.numbers.precision import Array
 from reference.system.documents import texts_of
 
@@ -221,7 +222,7 @@ def _zero(begin: float, end: float) -> ChartLine:
 
 
 def estimate_at(latitude: float) -> float:
-    """Return the paper's last but one estimate of the frequency in Hz: (51)-(52) with g' of (48), slowed by 2K/π."""
+    """Return the paper's second to last estimate of the frequency in Hz: (51)-(52) with g' of (48), divided by 2K/π."""
     return float(anharmonic(paris().but(latitude=mpf(latitude)).case))
 
 
@@ -240,9 +241,9 @@ def check_methods() -> None:
         if missing is not None:
             raise InputError(
                 "--out",
-                f"no {name}",
-                "the methods of figure 9 (extra `methods`)",
-                f"It is {missing}.",
+                Described(f"{name}: {missing}"),
+                "all methods of figure 9",
+                "Install them with pip install 'foucault-reference[methods]'.",
             )
 
 
@@ -299,7 +300,7 @@ NAME_ONLY = Marker(".", 0)
 def dots(
     name: str, x: Any, y: Any, colour: str, marker: Marker = DOT, dashes: Any = "none"
 ) -> ChartLine:
-    """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
+    """Return points, joined if `dashes` gives a line style; dots are faint, other markers hollow."""
     joined = line(name, x, y, colour, dashes, 0.7)
     style = {**joined.style, "marker": marker.shape, "markersize": marker.size}
     if marker.shape == DOT.shape:

@@ -1,4 +1,4 @@
-"""The yardstick of the papers' formulas: the Lagrangian, differentiated in high precision and never written out.
+"""The standard for the papers' formulas: the Lagrangian, differentiated in high precision and never written out.
 
 The bob's place in axes that do not turn is composed of rotations and of the ellipsoid's geometry;
 its velocity is the derivative of that place, the kinetic energy half its square, and Euler and

@@ -44,6 +44,7 @@ from typing import Any
 import numpy as np
 
 from reference import InputError, IntegrationError, Scene, solve
+from reference.errors import Described
 from reference.model.constants import axis_distance, constants
 from reference.model.start import Start
 from reference.numbers.precision import Array, context, to_mpf
@@ -104,7 +105,7 @@ def _check_available(method: Method, order: str) -> None:
         needed(module, str(method.extra), "foucault pend", word, instead)
     obstacle = available(method)
     if obstacle is not None:
-        raise InputError("foucault pend", obstacle, f"{word}, ready to run")
+        raise InputError("foucault pend", Described(obstacle), f"{word}, ready to run")
 
 
 def _texts(rows: Array) -> Iterator[str]:
@@ -128,7 +129,7 @@ def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
         if len(states) <= count:
             raise IntegrationError(
                 f"{method.title} at {step:g} s fails after t = {first * step + outcome.reached_t:g} s.",
-                "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
+                "The equations in x and y are valid below the suspension only; a shorter step (-t) may help.",
             )
         index = first + np.arange(count + 1)
         times, printed = (

@@ -10,6 +10,7 @@ from fractions import Fraction
 from pydantic import ValidationError
 
 from reference import InputError, Scene, parse_scene
+from reference.errors import NoEffectError
 from reference.scenes.fields import RunTable
 from reference.system.documents import texts_of
 
@@ -80,11 +81,11 @@ class Options:
         values = DEFAULTS | dict(given)
         for switch, why in (
             ("R", "uses no Runge-Kutta scheme"),
-            ("a", "knows the full theory only"),
+            ("a", "includes all terms"),
         ):
             if exact and values[switch] != DEFAULTS[switch]:
-                expected = "no such switch together with --exact"
-                raise InputError(f"-{switch}", values[switch], expected, f"The reference {why}.")
+                case = f"together with --exact, because the reference {why}"
+                raise NoEffectError(f"-{switch}", values[switch], case)
         skip, bits = _whole("s", values["s"], 1), _whole("a", values["a"], 0)
         if values["R"] not in METHOD_OF:
             raise InputError(

@@ -1,4 +1,4 @@
-"""Pendulums by which printed formulas are judged: random points, Paris, and runs of the reference such as its day.
+"""Pendulums for judging printed formulas: random points, Paris, and runs of the reference.
 
 On the Earth a term such as RΩ² is hidden behind g; at random points all numbers are of order one
 and no term is small, so a wrong one shows at once.
@@ -119,12 +119,12 @@ class Point:
 
     @cached_property
     def uniform(self) -> Constants:
-        """The same with gravity alone: no centrifugal force, as in the other two papers."""
+        """The same constants with gravity alone: no centrifugal force, as in the other two papers."""
         return replace(self.k, pull=(0, 0, -self.gravity / self.length), centrifugal=(0, 0, 0, 0))
 
     @cached_property
     def case(self) -> PaperCase:
-        """The same numbers as the approximations take them."""
+        """The same numbers as a `PaperCase`, the input of the approximations."""
         return PaperCase(MP, self.k, tuple(self.position), tuple(self.velocity))
 
     @cached_property
@@ -141,7 +141,7 @@ class Point:
         return self.but(rate=self.rate * sqrt(s))
 
     def but(self, **changes: Any) -> Point:
-        """Return the point with some of its numbers changed."""
+        """Return a copy of the point with some of its numbers changed."""
         return replace(self, **changes)
 
 
@@ -197,7 +197,7 @@ def window(
 
 
 def rotation(times: Array, swing_plane: Array) -> tuple[float, float]:
-    """Return a swing plane's degrees an hour, by a line fitted to its azimuths, and the largest distance from it."""
+    """Return a swing plane's rotation in degrees an hour by a fitted line, and the line's largest residual."""
     hours, turned = times / 3600, np.degrees(swing_plane)
     slope, start = np.polyfit(hours, turned, 1)
     return float(slope), float(np.abs(turned - slope * hours - start).max())
@@ -244,7 +244,7 @@ def paris_swing_plane() -> Array:
 
 @cache
 def paris_passage() -> tuple[Array, Array]:
-    """Return the states near the vertical, and how near a straight line through each passes it, in m.
+    """Return the states near the vertical, and the distance in m at which a straight line through each passes it.
 
     The rest position lies south of the vertical, so that the swing passes nearest while its plane
     lies north and south. Ten minutes before and after, the plane has turned by 1.9° and misses the

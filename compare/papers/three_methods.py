@@ -206,7 +206,7 @@ def _substituted(p: Point) -> Any:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return section("methods_", "Three methods",
         Identity("newton", "", "T - mgk - 2m ω × v = m a",
             forces, lambda p: p.mass * acceleration_of(p),

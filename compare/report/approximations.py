@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from reference import InputError, Scene
+from reference.errors import Described, counted
 from reference.numbers.precision import Array
 from reference.status import Status
 
@@ -206,7 +207,7 @@ def chart(rows: Sequence[TimeRow], what: str = "error_m") -> str:
     """
     lines = _lines(rows, what)
     if not lines:
-        raise InputError("rows", f"{len(rows)} rows", f"some with {what}")
+        raise InputError("rows", Described(counted(len(rows), "row")), f"rows with {what}")
     over = rows[0].over if isinstance(rows[0], SweepRow) else "time"
     lines_of_legend = sum(line.name.count("\n") + 1 for line in lines)
     height_in = max(4.8, 0.3 * lines_of_legend + 3)

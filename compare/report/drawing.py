@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
+from reference.errors import Described, in_words
 from reference.system.imports import needed
 
 # Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its
@@ -94,7 +95,9 @@ def check_matplotlib(field: str) -> None:
         import_module("matplotlib.figure")
     except ImportError as error:
         advice = "Install it again with pip install --force-reinstall 'foucault-reference[plot]'."
-        raise InputError(field, str(error), "a matplotlib that can be imported", advice) from None
+        raise InputError(
+            field, Described(error), "a matplotlib that can be imported", advice
+        ) from None
 
 
 def check_target(path: Path, field: str = "--plot") -> None:
@@ -109,9 +112,9 @@ def check_target(path: Path, field: str = "--plot") -> None:
     """
     check_matplotlib(field)
     if path.suffix.lower() not in _SUFFIXES:
-        raise InputError(field, str(path), f"a path that ends in {', '.join(_SUFFIXES)}")
+        raise InputError(field, str(path), f"a path that ends in {in_words(_SUFFIXES)}")
     if path.is_dir() or not path.absolute().parent.is_dir():
-        raise InputError(field, str(path), "a file in a folder that exists")
+        raise InputError(field, str(path), "a path in an existing folder")
 
 
 @contextmanager
@@ -321,7 +324,7 @@ def name_ends(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> No
 
 
 def name_beside(axes: Any, lines: Sequence[ChartLine], *, size: float = 8.0) -> None:
-    """Write the name of each line right of logarithmic axes, at the height of its end, where no other name is."""
+    """Write the name of each line to the right of logarithmic axes, at the height of its end, without overlaps."""
     low, high = axes.get_ylim()
     upwards = sorted(lines, key=lambda line: line.y[-1])
     heights = [math.log(line.y[-1] / low) / math.log(high / low) for line in upwards]
@@ -351,7 +354,7 @@ def _spread(heights: Sequence[float], gap: float) -> list[float]:
 
 
 def band(axes: Any, bound_m: float) -> None:
-    """Draw a band over errors below the bound of the reference, which cannot be measured."""
+    """Draw a band over errors below the reference's bound, which cannot be measured."""
     low, high = axes.get_ylim()
     if not low < bound_m < high:
         return

@@ -38,7 +38,7 @@ class Report:
     page: Callable[[dict[str, Any]], str]
 
     def check(self, out: Path | None) -> None:
-        """Refuse a folder before the work, as `check_folder` does; None is no folder."""
+        """Refuse an unusable folder before the work, as `check_folder` does; None means no folder."""
         if out is not None:
             check_folder(out, (CSV, self.json, PAGE))
 
@@ -55,7 +55,7 @@ class Report:
 
 
 def check_folder(folder: Path, names: Iterable[str]) -> None:
-    """Refuse a folder before the work; nothing is made.
+    """Refuse an unusable folder before the work; nothing is created.
 
     Raises:
         InputError: it has one of these files but no page of ours, so that somebody else's would be
@@ -66,9 +66,13 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
         if (existing is not None and not _is_ours(folder / PAGE)) or (
             folder.exists() and not folder.is_dir()
         ):
-            reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
+            reason = (
+                "It is not a folder"
+                if existing is None
+                else f"It contains a {existing} that no run wrote"
+            )
             expected = "a new folder, or one that an earlier run wrote"
-            raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
+            raise InputError("--out", str(folder), expected, f"{reason}. Choose another name.")
         absolute = folder.absolute()
         place = next(path for path in (absolute, *absolute.parents) if path.exists())
         with tempfile.TemporaryFile(dir=place):
@@ -80,7 +84,7 @@ def _is_ours(page: Path) -> bool:
 
 
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
-    """Write files into a folder, each whole or not at all, the page first.
+    """Write files into a folder, each completely or not at all, the page first.
 
     Other files in it are left alone.
 
@@ -105,7 +109,7 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
 
 
 def write_file(path: Path, content: str | bytes, field: str) -> None:
-    """Write a file that an option names, whole or not at all.
+    """Write a file that an option names, completely or not at all.
 
     Raises:
         InputError: it cannot be written; `field` is the option.

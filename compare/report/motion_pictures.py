@@ -149,7 +149,7 @@ def transits(axes: Any, motion: PicturedMotion) -> None:
 
 
 def panels(motion: PicturedMotion) -> dict[str, Callable[[Any, PicturedMotion], None]]:
-    """Return the pictures that there are of a motion, by name."""
+    """Return the available pictures of a motion, by name."""
     pictures = {
         "path": (path, True),
         "sphere": (sphere, motion.wide),
@@ -285,7 +285,7 @@ def _projected(points: Array) -> _Projected:
 
 
 def time_ticks() -> Any:
-    """Return a locator of ticks at times that a clock shows: every 6 of 24 h, every 10 of 60 min."""
+    """Return a locator of ticks at round times: every 6 h of 24, every 10 min of 60."""
     from matplotlib.ticker import MaxNLocator
 
     return MaxNLocator(6, steps=[1, 2, 3, 6, 10])

@@ -76,7 +76,7 @@ def plot(source: Score | Candidate | Golden | Solution | AnyScene) -> Picture:
             dataset has its motion.
 
     Raises:
-        InputError: it is none of these, or matplotlib is not installed.
+        InputError: the source is something else, or matplotlib is not installed.
     """
     if isinstance(source, Score):
         return Picture(

@@ -1,4 +1,4 @@
-"""The forms of a suite's outcomes: JSON, a page and a badge, tests in JUnit XML, annotations and a summary for GitHub.
+"""The outputs of a suite: JSON, a page and a badge, tests in JUnit XML, annotations and a summary for GitHub.
 
 For GitHub Actions as it documents them: workflow commands on stdout, and Markdown appended to the
 file that GITHUB_STEP_SUMMARY names.
@@ -80,7 +80,7 @@ def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
 
 
 def check(out: Path) -> None:
-    """Refuse a folder with somebody else's files before the work."""
+    """Before the work, refuse a folder that contains other files."""
     check_folder(out, (_JSON, CSV, PAGE, _BADGE))
 
 
@@ -97,7 +97,7 @@ def write(outcomes: Sequence[Outcome], out: Path) -> None:
 
 
 def message(outcomes: Sequence[Outcome]) -> str:
-    """Return what the badge says."""
+    """Return the text of the badge."""
     facts = [f"{_agreeing(outcomes)} of {counted(len(outcomes), 'scene')}"]
     digits = _fewest_digits(outcomes)
     if digits is not None:
@@ -238,7 +238,7 @@ def append_summary(text: str) -> None:
 
 
 def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
-    """Write a test for each candidate as JUnit XML: what ends with status 1 is a failure, a refused one an error.
+    """Write a JUnit XML test for each candidate: a status of 1 is a failure, a refusal is an error.
 
     Raises:
         InputError: the file cannot be written.

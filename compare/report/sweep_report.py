@@ -11,7 +11,7 @@ import numpy as np
 
 from reference import InputError
 from reference.commands.layout import TextColumn, paragraph, table
-from reference.errors import counted
+from reference.errors import Described, counted
 from reference.numbers.precision import Array, digits_that_hold
 from reference.scenes.scene import unit_of
 from reference.status import Status
@@ -217,14 +217,15 @@ def check(request: Request, path: Path) -> None:
     check_target(path)
     table = request.table
     if table.typed is None or len(table.shape) > 2 or set(table.values) & set(WORD_FIELDS):
-        expected = "one or two fields varied by --over, both numbers"
-        raise InputError("--plot", str(path), expected, "Or draw the columns.")
+        expected = "a sweep over one or two numerical fields (--over)"
+        got = Described("another kind of sweep")
+        raise InputError("--plot", got, expected, "Draw other sweeps from their columns.")
     if not _drawn(request):
-        raise InputError("--plot", str(path), "--want with frequency or precession")
+        raise InputError("--plot", str(path), "frequency or precession in --want")
 
 
 def draw(swept: Swept, path: Path) -> None:
-    """Draw frequency and precession of a sweep, those of them that were wanted, into a file."""
+    """Draw frequency and precession of a sweep, as far as requested, into a file."""
     request = swept.request
     drawn = _drawn(request)
     columns = swept.columns(drawn)

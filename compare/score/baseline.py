@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from reference import InputError
+from reference.errors import Described
 from reference.numbers.columns import POSITION
 from reference.system.documents import json_document
 
@@ -28,7 +29,7 @@ _SHARE = 0.1  # of a change: what is smaller is no part of it
 _WOBBLE = 10.0  # times a change: a cause that moves the bob by more has not come with it
 _ROUNDED = 10.0  # times the input floor: no more than this is no change
 _NEEDED = {"scene", "candidate", "verdict"}  # keys of a document
-_EXPECTED = "a document of `foucault score --json`"
+_EXPECTED = "a document that `foucault score --json` wrote"
 
 
 def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> Since | None:
@@ -49,8 +50,9 @@ def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> 
             return None
         changes = _since(new, score, baseline, explains)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        got = f"{type(error).__name__} {error}"
-        raise InputError("baseline", got, _EXPECTED, "Make it anew.") from None
+        got = Described("a document that cannot be read")
+        advice = f"Make it again ({type(error).__name__}: {error})."
+        raise InputError("baseline", got, _EXPECTED, advice) from None
     # both versions of a program have one name, and so have their files in a suite
     if isinstance(old, Mapping) and FILE in old:
         return replace(changes, name=old[FILE])
@@ -80,7 +82,8 @@ def rows_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
     if isinstance(document.get("rows"), list):
         rows = document["rows"]
     if not all(isinstance(row, dict) and row.keys() >= _NEEDED for row in rows):
-        raise InputError("baseline", "another document", _EXPECTED, "Make it anew.")
+        got = Described("a document of another kind")
+        raise InputError("baseline", got, _EXPECTED, "Make it again.")
     return rows
 
 
@@ -99,9 +102,9 @@ def _row(old: Mapping[str, Any], new: Score) -> Mapping[str, Any] | None:
             of_problem.append(row)
 
     if not of_problem and "problem" in old:
-        got = f"a score by {old['scene']} with {old['problem']}"
-        expected = f"one by {new.scene.id} with {problem}"
-        raise InputError("baseline", got, expected, "Judge both by the same inputs.")
+        got = Described(f"a score of the scene {old['scene']} with inputs {old['problem']}")
+        expected = f"a score of {new.scene.id} with inputs {problem}"
+        raise InputError("baseline", got, expected, "Score both with the same inputs.")
     for row in of_problem:
         if row["candidate"] == new.candidate.name:
             return row

@@ -14,6 +14,7 @@ from fractions import Fraction
 import numpy as np
 
 from reference import InputError, Scene
+from reference.errors import Described
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.solver.doubles import TOLERANCE
@@ -24,7 +25,7 @@ from ..candidates.clock import shown
 Ends = tuple[Fraction, Fraction]
 
 _MOST_PLACES = 9  # of a time in s
-SUBTRACT = "Subtract what the clock showed at the release."
+SUBTRACT = "Subtract the time that the clock showed at the release."
 
 
 def counted_from_release(
@@ -56,7 +57,7 @@ def counted_from_release(
     allowed_m = TOLERANCE * math.hypot(*release) if tolerance_m is None else tolerance_m
     distance_m = math.dist((candidate.columns["x"][0], candidate.columns["y"][0]), release)
     if distance_m > allowed_m:
-        got = f"{shown(clock_s)} in the first row, {distance_m:.3g} m off the release"
+        got = Described(f"{shown(clock_s)} in the first row, {distance_m:.3g} m from the release")
         raise InputError(f"{candidate.name}: t", got, "times since the release", SUBTRACT)
 
     text = (

@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from reference import Golden, InputError, Scene, Solution, UnreachableError
 from reference.dataset.golden import WITHIN, Dense
-from reference.errors import did_you_mean, in_words
+from reference.errors import Described, did_you_mean, in_words
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 from reference.solver.doubles import TOLERANCE
@@ -172,8 +172,9 @@ def judge_with(
         expected = "a score, a trajectory, the path of a file, or a score's JSON document"
         raise InputError("baseline", baseline, expected)
     if isinstance(scene, Mapping) and "t" in scene:
-        got = f"columns {', '.join(map(str, scene))}"
-        raise InputError("scene", got, "a scene", "Write the rows first: judge(rows, scene).")
+        got = Described(f"the columns {', '.join(map(str, scene))}")
+        advice = "The arguments are in the wrong order: call judge(rows, scene)."
+        raise InputError("scene", got, "a scene", advice)
     scene = as_scene(scene).with_values({"run.sections": ""})  # it takes none of them
 
     trial = _trial_of(_candidate_of(candidate, transits, scene), scene, options)
@@ -310,7 +311,8 @@ def _score_by(golden: Golden | Solution, truth: Dense, trial: _Trial) -> Score:
         elif candidate.positions:
             notes = (*notes, reason)
         else:
-            raise InputError("transits", reason, "a trajectory as well", "Print t,x,y.")
+            advice = f"Print t,x,y as well: {reason}."
+            raise InputError("transits", Described("transits alone"), "a trajectory", advice)
 
     return Score(
         candidate=candidate,
@@ -408,5 +410,5 @@ def _with_changes(
     changes = since(score, baseline, options.explain)
     notes = score.notes
     if changes is None:
-        notes = (*notes, "the baseline has no score of it: this verdict stands alone")
+        notes = (*notes, "the baseline has no score of it, so nothing is compared")
     return replace(score, since=changes, notes=notes)

@@ -1,4 +1,4 @@
-"""Compare rows, measured or computed, with what is proved for every value of uncertain inputs."""
+"""Compare measured or computed rows with the intervals that are proved for uncertain inputs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from reference import InputError, Ranges, prove_ranges
-from reference.errors import counted
+from reference.errors import Described, counted
 from reference.numbers.columns import STATE
 
 from ..candidates.candidate import Candidate, Passages
@@ -29,7 +29,7 @@ _TRANSIT = "transit"
 
 
 class Outside(NamedTuple):
-    """A number outside of what is proved.
+    """A number outside its proven interval.
 
     Attributes:
         column: of the number; "transit", or the word of a section.
@@ -61,7 +61,7 @@ class Outside(NamedTuple):
 
 @dataclass(frozen=True)
 class Measured:
-    """The verdict on a file of measurements: rows and transits that contradict what is proved for uncertain inputs.
+    """The verdict on a file of measurements: the rows and transits outside the intervals proved for uncertain inputs.
 
     Attributes:
         name: of the candidate.
@@ -109,7 +109,7 @@ class Measured:
             )
         clock = ""
         if self.starts:
-            clock = f" by a clock that showed {starts_in_words(self.starts)} at the release"
+            clock = f" if the clock showed {starts_in_words(self.starts)} at the release"
         return (
             f"{self.name} cannot be told apart from {scene} with {box}: {self._contents()}, "
             f"all inside what is proved{clock}"
@@ -172,8 +172,9 @@ def measured(
     ranges = _proved_at(times, ranges, report)
     intervals = _intervals(ranges, times.section)
     if times.needs_passages and not intervals:
-        got = f"none: {times.section or 'xdot'} has no single zeros in this scene"
-        raise InputError(times.name, "transits", got, "Give positions instead.")
+        word = times.section or "xdot"
+        expected = f"positions, for {word} has no single zeros in this scene"
+        raise InputError(times.name, Described("transits"), expected, "Print t,x,y.")
 
     outside: list[Outside] = []
     if candidate is not None:
@@ -278,13 +279,14 @@ def _check_clock(candidate: Candidate | None, times: _Times) -> None:
         if clock_s is None and not times.rows_in_span and _fits(times.rows, times.end):
             clock_s = float(candidate.t[0])
         if clock_s is not None:
-            got = f"{shown(clock_s)} in the first row"
+            got = Described(f"{shown(clock_s)} in the first row")
             raise InputError(f"{times.name}: t", got, "times since the release", SUBTRACT)
 
     in_span = times.rows_in_span or times.passages_in_span
     if not in_span and not times.may_be_by_another_clock:
-        expected = f"one up to {float(times.end):g} s"
-        raise InputError(times.name, "no row", expected, "The scene ends there: run.t_end.")
+        got = Described("no row within the scene's span")
+        expected = f"a row at most {float(times.end):g} s after the release, where the scene ends"
+        raise InputError(times.name, got, expected, "Set run.t_end to a later time.")
 
 
 def _fits(times: Sequence[Fraction], end: Fraction) -> bool:
@@ -327,25 +329,25 @@ def _check_decided(times: _Times, decided: Sequence[Fraction], intervals: Sequen
     if times.rows_in_span or decided:
         return
     if not times.passages_in_span:
-        first_s = float(times.passages[0])
-        expected = f"times above 0, up to {float(times.end):g} s"
-        raise InputError(f"{times.name}: t", f"{first_s:.10g} s first", expected, SUBTRACT)
+        got = Described(f"{float(times.passages[0]):.10g} s as the first time")
+        expected = f"times above 0 and up to {float(times.end):g} s"
+        raise InputError(f"{times.name}: t", got, expected, SUBTRACT)
 
     first = times.passages_in_span[0]
     zero = next(zero for zero in intervals if not zero.is_single and zero.holds(first))
     advice = (
-        f"The proof leaves {float(zero.low):g} to {float(zero.high):g} s open. "
-        "Take smaller widths, or another section."
+        f"Between {float(zero.low):g} and {float(zero.high):g} s nothing is proved. "
+        "Give smaller widths, or choose another section."
     )
-    expected = f"a time at which {times.word} is decided"
-    raise InputError(f"{times.name}: t", f"{float(first):g} s", expected, advice)
+    got = Described(f"{float(first):g} s")
+    expected = "a time for which the proof decides whether there is a passage"
+    raise InputError(f"{times.name}: t", got, expected, advice)
 
 
 def _notes(times: _Times, decided: Sequence[Fraction], starts: Sequence[Ends]) -> Iterator[str]:
     """Yield remarks on a clock, and on times that are left out."""
     if starts:
-        clock = f"a clock that showed {starts_in_words(starts)} at the release"
-        yield f"all transits are inside by {clock}"
+        yield f"all transits are inside if the clock showed {starts_in_words(starts)} at the release"
 
     late = sum(t > times.end for t in [*times.rows, *times.passages])
     if late:

@@ -1,4 +1,4 @@
-"""Score the passages of a section, such as those of a light gate, where all inputs are certain."""
+"""Score the passages of a section, such as those of a light gate, for exact inputs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from reference import Golden, InputError, Scene
-from reference.errors import counted
+from reference.errors import Described, counted
 from reference.model.constants import Constants, constants_in_double
 from reference.model.force import rates
 from reference.model.sections import form_of
@@ -168,11 +168,14 @@ def _nothing_in_the_span(passages: Passages, scene: Scene, starts: tuple[Ends, .
     """Return the error of passages none of which lies in the scene's span."""
     advice = ""
     if starts:
-        advice = f"By the passages the clock showed {starts_in_words(starts)} at the release. "
+        advice = (
+            f"The passages suggest that the clock showed {starts_in_words(starts)} at the release. "
+        )
     if len(passages.times):
         advice += SUBTRACT
-    expected = f"times above 0, up to {scene.run.t_end} s"
-    return InputError(f"{passages.name}: t", "no time in the scene's span", expected, advice)
+    got = Described("no time within the scene's span")
+    expected = f"times above 0 and up to {scene.run.t_end} s"
+    return InputError(f"{passages.name}: t", got, expected, advice)
 
 
 def _swing_s(scene: Scene) -> float:

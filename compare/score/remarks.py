@@ -1,4 +1,4 @@
-"""Remarks beside a verdict: that another unit of length fits, or that a bob at rest would agree as well."""
+"""Remarks with a verdict: that another unit of length fits, or that a bob at rest would agree too."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SAME = 1e-3  # relative difference of ratios that count as one scale
 
 
 def scale_beyond_the_cord(candidate: Candidate, scene: Scene, truth: Array) -> Deviation | None:
-    """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None.
+    """Return an explanation of positions out of the cord's reach, such as another unit of length or pixels, or None.
 
     A unit is named if the rows, in metres then, differ from the truth by less than its size: those
     of another pendulum do not.
@@ -85,7 +85,7 @@ def _unit_of(scale: float) -> str | None:
 
 
 def warning_of_a_resting_bob(score: Score) -> tuple[str, ...]:
-    """Return a warning if a bob that does not move would agree as well, so that agreement means little.
+    """Return a warning if a bob that does not move would agree too, so that agreement means little.
 
     It may stay at its release, as in a program that never steps, or at its rest position, as in one
     without a swing.

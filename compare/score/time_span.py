@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from reference import InputError, Scene
-from reference.errors import counted
+from reference.errors import Described, counted
 from reference.numbers.precision import Array
 
 from ..candidates.candidate import Candidate
@@ -31,7 +31,7 @@ def rows_until(candidate: Candidate, end_s: float) -> Candidate:
     if kept.all():
         return candidate
     if not kept.any():
-        expected = f"a time from the first row on, which is at t = {candidate.t[0]:g} s"
+        expected = f"at least {candidate.t[0]:g} s, the time of the first row"
         raise InputError("t_end", f"{end_s:g}", expected)
 
     later = counted(int((~kept).sum()), "row")
@@ -52,8 +52,9 @@ def check_transits(times: Array, scene: Scene) -> None:
         InputError: they are.
     """
     if len(times) and times[0] > float(scene.exact.t_end):
+        got = Described(f"{times[0]:.10g} s as the first time")
         expected = f"times from 0 to {scene.run.t_end} s"
-        raise InputError("transits: t", f"{times[0]:.10g} s first", expected, SUBTRACT)
+        raise InputError("transits: t", got, expected, SUBTRACT)
 
 
 def end_of_run(candidate: Candidate, scene: Scene) -> float:
@@ -76,7 +77,7 @@ def check_end(candidate: Candidate, scene: Scene) -> None:
     last_s = float(candidate.t[-1])
     if last_s > float(scene.exact.t_end) + float(scene.exact.grid_step):
         expected = f"times from 0 to {scene.run.t_end} s"
-        got = f"{last_s:.10g} at the end"
+        got = Described(f"{last_s:.10g} in the last row")
         raise InputError(f"{candidate.name}: t", got, expected, _advice(candidate, scene))
 
 

@@ -1,4 +1,4 @@
-"""Match a candidate's transits (xdot = 0) with the truth's, in order, and name the missed and the extra ones.
+"""Match a candidate's transits (xdot = 0) in order with the true ones, and list the missed and the extra ones.
 
 Where the swing plane passes north-south, |ax| at a transit is small and its time is
 ill-conditioned. The error of a time is therefore weighted by |ax|/ω, which makes it the distance in
@@ -240,9 +240,9 @@ def unjudged_transits(golden: Golden | Solution) -> str | None:
         transits = "xdot is identically zero" if golden.scene.run.transits else "not asked for"
 
     if transits == "not asked for":
-        return "the scene asks for no transits (run.transits): the candidate's were not judged"
+        return "the scene does not look for transits (run.transits), so the candidate's were not judged"
     if transits == "xdot is identically zero":
-        return f"{transits}: the candidate's transits were not judged"
+        return f"{transits}, so the candidate's transits were not judged"
     return None
 
 
@@ -262,7 +262,7 @@ def judged_transits(
     tolerance_m: float,
     end_of_run: float | None = None,
 ) -> TransitErrors:
-    """Return the errors of a candidate's transits, but of those after the truth's end or left open by its proof.
+    """Return the errors of a candidate's transits, except those after the truth's end or undecided by its proof.
 
     A transit of the truth after the end of the run is left out, unless an error within the
     tolerance moves it into the run.

@@ -1,4 +1,4 @@
-"""A judgement: its errors, what was allowed, the verdict that follows, and the lines for people that say so."""
+"""A judgement: errors, the allowed error, the verdict that follows, and the lines that report it."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Score:
         candidate: the trajectory that was judged.
         scene: the problem, its inputs read as decimals or as doubles.
         why_inputs: the reason for that reading.
-        golden: the dataset that the truth comes from, or the scene solved to no more than the
-            verdict takes.
+        golden: the dataset that the truth comes from, or the scene solved as accurately as the
+            verdict needs.
         errors: at the candidate's times.
         tolerance_m: largest position error allowed, in m.
         swing: turn of the swing plane and delay.
@@ -49,8 +49,8 @@ class Score:
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
         explanation: the likely reasons for the error; None if they were not looked for.
-        experiments: runs of the program with other numbers, and what they measured; None if none
-            were asked for.
+        experiments: runs of the program with other numbers, and what they measured; None if they
+            were not requested.
         since: the changes since a baseline, if there is one.
     """
 
@@ -115,7 +115,7 @@ class Score:
 
     @cached_property
     def covered(self) -> float:
-        """Share of the scene's span up to the last row, from 0 to 1; of transits alone, up to the next true one."""
+        """Share of the scene's span up to the last row, from 0 to 1; for transits alone, up to the next true one."""
         last = float(self.errors.t[-1])
         end = float(self.scene.exact.t_end)
         if not self.candidate.positions:
@@ -126,7 +126,7 @@ class Score:
 
     @property
     def falls_short(self) -> bool:
-        """True if it says nothing of the motion, having no row after t = 0, or covers less than is demanded."""
+        """True if there is no row after t = 0, or if the rows cover less of the span than demanded."""
         return self.covered < self.covers or not self.covered > 0
 
     @property
@@ -144,7 +144,7 @@ class Score:
 
     @property
     def agrees(self) -> bool:
-        """True if nothing is off by more than `allowed_m`, missed, extra or left out."""
+        """True if no error exceeds `allowed_m` and no transit is missed, extra or left out."""
         met = self.transits is None or self.transits.within(self.allowed_m)
         return met and not (self.off_path or self.falls_short)
 
@@ -270,7 +270,7 @@ def _allowed(score: Score) -> str:
     if isinstance(score.golden, Solution):
         return allowed
     if not score.input_floor_m:
-        return f"{allowed}; the inputs are doubles as they stand"
+        return f"{allowed}; the inputs are exact doubles"
     ratio = errors.max_m / score.input_floor_m
     return f"{allowed}; {ratio:.2g} times the input floor of {score.input_floor_m:.2g} m"
 
@@ -319,7 +319,7 @@ def _lines_on_reasons(score: Score) -> Iterator[str]:
 
 
 def percent(share: float) -> str:
-    """Return a share to three digits, rounded down: 100 % is all of it."""
+    """Return a share in per cent to three digits, rounded down, so that 100 % means all."""
     percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
     rounded = Context(prec=3, rounding=ROUND_DOWN).create_decimal_from_float(percents)
     return f"{float(rounded):.6g} %"

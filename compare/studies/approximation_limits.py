@@ -1,4 +1,4 @@
-"""Where each approximation stops being good: over time, amplitude, latitude and length, to 1 mm, 1 µm, 1 arcsecond."""
+"""Where each approximation is good to 1 mm, 1 µm and 1 arcsecond: over time, amplitude, latitude and length."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from itertools import groupby
 import numpy as np
 
 from reference import FoucaultError, InputError, Scene, parse_scene
+from reference.errors import Described
 from reference.status import Status
 
 from ..approximations.approximation import Motion
@@ -41,7 +42,7 @@ class SweepRow(TimeRow):
 
 @dataclass(frozen=True)
 class LimitRow:
-    """Where an approximation is good to a limit: intervals of time in s or of the varied quantity; none if nowhere.
+    """Intervals of time in s, or of the varied quantity, in which an approximation is good to a limit; maybe none.
 
     `status` and `reason` say why it could not be tried anywhere.
     """
@@ -194,7 +195,7 @@ def varied(scene: Scene, over: str, value: float) -> Scene:
         centre_y = case.ctx.mpf(case.rest[1]) * case.length
         amplitude = case.ctx.hypot(x, y - centre_y)
         if not amplitude:
-            got = f"x = {scene.release.x}, y = {scene.release.y}"
+            got = Described(f"x = {scene.release.x}, y = {scene.release.y}")
             raise InputError("release", got, "a release away from the rest position")
         ratio = target / amplitude
     release = {

@@ -1,4 +1,4 @@
-"""A campaign: many measurements in child processes, each result stored at once, so that it resumes where it stopped.
+"""A campaign: many measurements in child processes; each result is stored at once, so that it can be resumed.
 
 None pays for another's memory or threads, and a hang (killed after a patience) or a crash loses
 only its own item. Cost is that of one core: every library gets one thread. The machine and its load
@@ -54,7 +54,7 @@ Counted = Callable[[int, int, str], None]
 
 @dataclass(frozen=True)
 class Reports:
-    """What a study calls while it works.
+    """Callbacks of a study.
 
     Attributes:
         solving: called while the truth is solved for, with what is solved (scenes, or days of one)
@@ -236,7 +236,7 @@ def machine() -> dict[str, str]:
 
 
 def load_per_core() -> float | None:
-    """Return how many processes wanted to run in the last minute, over the cores.
+    """Return the mean number of runnable processes in the last minute, divided by the number of cores.
 
     None where the system does not tell.
 

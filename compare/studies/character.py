@@ -1,4 +1,4 @@
-"""The difficulty of a scene, measured on the true trajectory, and why a method failed on it, as these numbers say.
+"""The difficulty of a scene, measured on the true trajectory, and the likely reason why a method failed on it.
 
 Rates are eigenvalues of the equations' Jacobian on the tangent space of the sphere: the four that
 belong to the motion, without those that a formulation adds off the sphere.
@@ -149,7 +149,7 @@ def reason_of(
     requested: float,
     limit_s: float,
 ) -> str:
-    """Return the causes that the numbers point to, the strongest first.
+    """Return the causes that the numbers suggest, the strongest first.
 
     Empty if the run is right.
     """

@@ -1,4 +1,4 @@
-"""One measurement: a method at a setting on a scene, its cost and error; every attempt gives a row, failed ones too.
+"""One measurement: a method at a setting on a scene, its cost and error; failed attempts give a row too.
 
 Only the integration itself is timed, in one thread, with output at the golden grid times. A probe
 over a short span comes first: it warms up, and it predicts the cost of the whole span. Where that

@@ -1,4 +1,4 @@
-"""A row of a study: one method at one setting, its status (of a failure too), cost, errors against the golden grid."""
+"""A row of a study: one method at one setting, with status, cost, and errors against the golden grid."""
 
 from __future__ import annotations
 
@@ -97,12 +97,12 @@ class Row:
 
     @property
     def measured(self) -> bool:
-        """True if the whole span was run, to a right end: then the row has a cost and an error."""
+        """True if the whole span was run successfully: then the row has a cost and an error."""
         return self.status == Status.OK
 
     @property
     def failed(self) -> bool:
-        """True if it is not known what the whole span costs."""
+        """True if the cost of the whole span is not known."""
         return self.status not in (Status.OK, Status.EXTRAPOLATED)
 
 

@@ -282,7 +282,7 @@ def _status_of(digits: float, requested: float, lost: float) -> Status:
 
 
 def digits_requested(method: str, setting: float) -> float:
-    """Return the digits that a method is asked for by a setting; of a fixed step, those of its order."""
+    """Return the digits that a setting requests of a method; for a fixed step, those that its order gives."""
     if method not in METHODS:
         return users_program.DIGITS
     kind = METHODS[method].setting

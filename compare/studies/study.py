@@ -1,4 +1,4 @@
-"""Error against run time: every method over its ladder of settings on one scene, and the order that its runs show.
+"""Error against run time: every method over its settings on one scene, and the observed order of its runs.
 
 >>> from compare.studies.study import study
 >>> study("paris", ["rk4"], t_end=60)
@@ -132,19 +132,19 @@ def study(
         methods: ids, each run over its settings; all if None.
         t_end: end of the span in s; the scene's own if None.
         formulations: whether to compare the formulations of the equations in one method as well.
-        items: the runs, if others are wanted than `plan` lists from `methods` and `formulations`.
+        items: the runs, if they differ from those that `plan` lists from `methods` and `formulations`.
         programs: commands of programs of your own, by the names that `items` call them by.
         candidates: files of somebody's output, by the names of their rows.
         limit_s: CPU seconds for one run; a longer one is extrapolated from a part of the span.
-        digits: of the truth if it has to be solved for; the scene's own if None.
-        journal_path: a file to which rows are appended, and whose rows are not measured again.
+        digits: digits of the truth if the scene must be solved; the scene's own if None.
+        journal_path: a file to which rows are appended; rows in it are not measured again.
         report: called with the number of finished rows, of all rows, and the method that runs now.
-        solving: called with the simulated time reached, in s, while the truth is solved for.
-        announce: called with a message if the truth has to be solved for.
+        solving: called with the simulated time reached, in s, while the scene is solved.
+        announce: called with a message if the scene must be solved.
 
     Raises:
         InputError: an unknown scene or method.
-        UnreachableError: the truth cannot be solved for.
+        UnreachableError: the scene cannot be solved.
     """
     requested = as_scene(scene)
     if isinstance(methods, str):

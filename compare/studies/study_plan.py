@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from reference import InputError, Scene
+from reference.errors import Described
 from reference.numbers.precision import DOUBLE_BITS
 
 from ..methods import METHODS
@@ -124,11 +125,10 @@ def _check_usable(methods: Sequence[str] | None) -> None:
     if all(reasons.values()):
         why = (
             "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
-            or "None stands for all"
+            or "None means all methods"
         )
-        raise InputError(
-            "methods", ", ".join(reasons) or "no id", "a method that can run here", f"{why}."
-        )
+        got = ", ".join(reasons) if reasons else Described("no id")
+        raise InputError("methods", got, "a method that can run here", f"{why}.")
 
 
 def bits_of(text: str) -> list[int]:
@@ -139,13 +139,13 @@ def bits_of(text: str) -> list[int]:
     """
     precisions = sorted({*parsed(text.split(","), int)})
     if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > _MOST_BITS:
-        expected = f"bits from {DOUBLE_BITS} to {_MOST_BITS}, such as 53,64,113,256,512"
+        expected = f"numbers of bits from {DOUBLE_BITS} to {_MOST_BITS}, such as 53,64,113,256,512"
         raise InputError("--precisions", text, expected, "Separate them by commas.")
     return precisions
 
 
 def parsed(words: Iterable[str], kind: Callable[[str], T]) -> list[T]:
-    """Return the numbers that words are; none at all where one of them is no number."""
+    """Return words as numbers; an empty list if one of them is not a number."""
     try:
         return [kind(word) for word in words]
     except ValueError:
@@ -167,7 +167,7 @@ def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Sce
 
 
 def on_doubles(scene: Scene) -> Scene:
-    """Return the scene; if one of its grid times is not a double, with a grid step of few bits and the same end.
+    """Return the scene; if a grid time is not a double, with a grid step of few bits and the same end.
 
     A method and the truth are then compared at the same times. 0.1 s is not a double, nor are most
     of its multiples; between such a time and the nearest double the bob moves by some 1e-16 of its

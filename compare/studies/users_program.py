@@ -1,4 +1,4 @@
-"""A user's program or file on one scene: its output, at whatever times it has, against the truth there.
+"""A user's program or file on one scene: its output compared with the truth at its own times.
 
 Unlike `methods.method.external`, which has a study time a program at the golden grid times, this
 asks only where it breaks, or how far a file is off.
@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import Golden, InputError, Scene
+from reference.errors import Described
 from reference.plain_text import plain, shortened
 from reference.status import Status
 
@@ -107,12 +108,15 @@ def files_of(
         name = shortened(plain(Path(path).name), LONGEST_NAME)
         if name in files or name in taken or name in METHODS:
             raise InputError(
-                "--candidates", path, "a file whose name no other row has", "Rename the file."
+                "--candidates",
+                path,
+                "a file with a name of its own",
+                "Rename the file: another row has this name.",
             )
         candidate = read(path)
         if not candidate.positions:
             raise InputError(
-                "--candidates", path, "a file with positions", "It has times of transits alone."
+                "--candidates", path, "a file with positions", "It contains only times of transits."
             )
         files[name] = candidate, cpu_s
     return files
@@ -125,7 +129,7 @@ def _stated_seconds(cpu: str | None, count: int) -> Sequence[float | None]:
     seconds = parsed(cpu.split(","), _seconds_or_unknown)
     valid = all(value is None or 0 < value < math.inf for value in seconds)
     if not valid or len(seconds) != count:
-        expected = f"{count} positive numbers of seconds, or - where nobody knows"
+        expected = f"{count} positive numbers of seconds, or - where the time is unknown"
         raise InputError("--cpu", cpu, expected)
     return seconds
 
@@ -168,7 +172,8 @@ def _against(
     within = candidate.t <= end_s + step_s / 2
     t = candidate.t[within]
     if not len(t) or not t[-1] > 0:
-        raise InputError("its output", "no row after t = 0", f"rows to t = {end_s:g} s")
+        got = Described("no row after t = 0")
+        raise InputError("its output", got, f"rows up to t = {end_s:g} s")
     truth = truth_at(golden, t)
     differences = [
         candidate.columns[name][within] - truth.states[:, i]

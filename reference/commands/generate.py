@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..engines import AUTO, engine_names
-from ..errors import InputError, counted, in_words
+from ..errors import NOTHING, InputError, counted, in_words
 from ..scenes.fields import CONFIRMATIONS, LEVELS
 from ..scenes.scene import load_scene, unit_of
 from ..scenes.shipped import scene_ids
@@ -57,7 +57,9 @@ _OUT = option(
     "DIR",
 )
 _DIGITS = option(
-    "--digits", "Digits of the largest number in a column (default: the scene's).", "D"
+    "--digits",
+    "Significant digits of the largest number in each column (default: the scene's).",
+    "D",
 )
 _LEVEL = option(
     "--level",
@@ -67,28 +69,29 @@ _LEVEL = option(
 )
 _ENGINE = option(
     "--engine",
-    f"Integrate with {in_words(engine_names())}; auto: the fastest, or what made the dataset that ships.",
+    f"Integrate with {in_words(engine_names())}; auto: the fastest, or the engine that made the shipped dataset.",
     "E",
     completion(lambda: _ENGINES),
 )
 _NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
 _AUDIT = option(
-    "--audit/--no-audit", "Check all that compiled code returns for the proof (default: --audit)."
+    "--audit/--no-audit",
+    "Check everything that compiled code returns for the proof (default: --audit).",
 )
 _CONFIRM = option(
     "--confirm",
-    f"What heyoka confirms of a proof: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
-    "(default: sampled; of what ships, the whole).",
+    f"How much of a proof heyoka confirms: {in_words(CONFIRMATIONS)}; sampled is a tenth of the grid's intervals "
+    "(default: sampled; whole for shipped scenes).",
     "C",
     completion(lambda: CONFIRMATIONS),
 )
 _NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
 _FUNCTION = option(
     "--function/--no-function",
-    "Make the golden function, the motion at any time, of a proof (default: but for what ships without it).",
+    "Make the golden function of a proof, the motion at any time (default: yes, unless shipped without it).",
 )
-_NO_TABLES = option("--no-tables", "Write the golden function alone.")
-_ALL = option("--all", "Make all that ship and are missing or not sealed.")
+_NO_TABLES = option("--no-tables", "Write only the golden function.")
+_ALL = option("--all", "Make the shipped datasets that are missing or not sealed.")
 
 
 @dataclass(frozen=True)
@@ -134,7 +137,7 @@ class _GenerateOptions:
         """The scene to solve, its fields replaced."""
         if self.scene_word is None:
             raise InputError(
-                "SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them."
+                "SCENE", NOTHING, "a scene, or --all", "`foucault scenes` lists the scenes."
             )
         return load_scene(self.scene_word, self.replaced)
 
@@ -209,9 +212,9 @@ _CONFLICTS = (
 def _generate(options: _GenerateOptions) -> None:
     """Solve a scene and write its golden dataset.
 
-    Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
+    If inputs are uncertain (--uncertain, or the scene's [uncertain]), it writes ranges: intervals that are proved
     for every value of these inputs.
-    foucault generate --all --workers 2 makes all that ship, into --out.
+    foucault generate --all --workers 2 makes all shipped datasets, in --out.
     """
     refuse_conflicts(options, _CONFLICTS)
     if options.every:
@@ -277,7 +280,9 @@ def _solved(options: _GenerateOptions, making: Making, show: Show) -> Solution:
         solution = solve(scene, **making.solve_options(scene), report=_report(scene, show))
     run = solution.run
     if options.engine not in (AUTO, run.engine):
-        advice = f"So few digits need only {run.number}, which {options.engine} does not have."
+        advice = (
+            f"So few digits need only numbers of type {run.number}, which {options.engine} lacks."
+        )
         raise InputError("--engine", options.engine, f"{AUTO} or {run.engine}", advice)
     return solution
 
@@ -343,7 +348,7 @@ def _generate_ranges(options: _GenerateOptions, widths: dict[str, str]) -> None:
     from ..solver.uncertain import prove_ranges
 
     if options.level not in (None, "enclosed"):
-        expected = "enclosed, together with uncertain inputs"
+        expected = "enclosed, because inputs are uncertain"
         raise InputError("--level", options.level, expected, "Ranges are always proved.")
     if options.out is not None:
         check_target(options.out, RANGES)
@@ -400,7 +405,7 @@ def _count(decided: int, possible: int) -> str:
     """Return how many zeros are decided, and how many intervals are left open."""
     if not possible:
         return str(decided)
-    return f"{decided}, and {counted(possible, 'interval')} that may hold more"
+    return f"{decided}, and {counted(possible, 'interval')} that may contain more"
 
 
 def _width_at_the_end(ranges: Ranges) -> str:

@@ -58,7 +58,7 @@ class _Job:
 
 
 def jobs(replaced: Sequence[str], out: Path | None) -> list[_Job]:
-    """Return all datasets that ship, of each scene and of sealed other readings, the longest first.
+    """Return the datasets that ship, the longest run first: one of each scene, and sealed ones of other readings.
 
     Args:
         replaced: fields of every scene, each as section.key=value.
@@ -79,7 +79,7 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[_Job]:
 
 
 def is_done(job: _Job) -> bool:
-    """Return whether the dataset is there and sealed, with the same inputs.
+    """Return whether the dataset exists, is sealed, and has the same inputs.
 
     Where it ships, its seal must be that in the index.
     """
@@ -134,7 +134,7 @@ def generate_all(
     cluster: str | None,
     as_json: bool,
 ) -> None:
-    """Make what is missing or not sealed, each in a process of its own.
+    """Make the datasets that are missing or not sealed, each in a process of its own.
 
     The failure of a scene does not affect the others.
 
@@ -147,7 +147,7 @@ def generate_all(
     if cluster is not None:
         needed("distributed", "cluster", "--cluster", "sending scenes to a cluster")
     every = jobs(replaced, out)
-    with stoppable("what is done stays, and the same command goes on"), progress() as show:
+    with stoppable("finished datasets are kept; the same command resumes"), progress() as show:
         undone = _undone(every)
         move = show("datasets", len(undone), "datasets")
         rows = []

@@ -25,7 +25,7 @@ Fact = tuple[str, str]
 
 
 def line_width() -> int:
-    """Return how many characters a line may have: as many as the terminal shows, at most 80."""
+    """Return the width of a line in characters: that of the terminal, at most 80."""
     columns = shutil.get_terminal_size((WIDEST, 24)).columns
     return max(_NARROWEST, min(WIDEST, columns))
 
@@ -49,7 +49,7 @@ def paragraph(text: str, indent: str = "", hanging: str = "") -> list[str]:
 
 
 def facts(pairs: Iterable[Fact]) -> list[str]:
-    """Return labels with their texts, one below the other; a text is wrapped beside its label.
+    """Return one line for each label and its text; long texts are wrapped beside their label.
 
     The same label again is left out.
     """
@@ -71,7 +71,7 @@ def facts(pairs: Iterable[Fact]) -> list[str]:
 
 @dataclass(frozen=True)
 class TextColumn:
-    """A column of a table: its heads, one above the other, and its cells; numbers are aligned right."""
+    """A column of a table: the lines of its head, and its cells; numbers are aligned right."""
 
     heads: Sequence[str]
     cells: Sequence[str]

@@ -1,4 +1,4 @@
-"""Period, precession and full turn of a scene, for people: a fact a line, with units."""
+"""Period, precession and full turn of a scene for people, with units, one fact on each line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ERRORS = {
 
 
 def motion_facts(motion: dict[str, Any]) -> Iterator[Fact]:
-    """Yield the numbers of a motion with the digits that their errors leave, and why some are left out."""
+    """Yield the numbers of a motion, to the digits that their errors justify, and why some are left out."""
     if "reason" in motion:
         yield "no period", motion["reason"]
         return

@@ -1,4 +1,4 @@
-"""Which uncertain input to know better, and how well, found by proofs with narrower inputs.
+"""Which uncertain input to measure better, and how well, found by proofs with narrower inputs.
 
 First-order shares would not do: most of a wide interval is what the proof loses, which grows with the square of
 the widths. A proof with a narrower input measures both.
@@ -25,7 +25,7 @@ Widths = Mapping[str, str]
 
 
 def reach_s(scene: Scene, widths: Widths) -> float:
-    """Return up to which time the states can be proved for these widths, at most the end of the run, in s."""
+    """Return the time in s up to which the states can be proved for these widths, at most the end of the run."""
     try:
         prove_ranges(scene, widths, derivatives=True, transits=False, sections=[])
     except BoxTooWideError as error:
@@ -49,7 +49,7 @@ class Narrowing:
         self._done = 0
 
     def for_the_run(self, holds_s: float) -> dict[str, Any]:
-        """Return how far the states are proved with each input alone ten times as well known, and what suffices.
+        """Return how far the proof reaches with each single input known ten times better, and which widths suffice.
 
         Args:
             holds_s: up to which time it holds with the widths as they are.
@@ -72,7 +72,7 @@ class Narrowing:
         }
 
     def for_a_passage(self, passage: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the width of a passage's interval with each input alone ten times as well known.
+        """Return the width of a passage's interval in s with each single input known ten times better.
 
         If a width was asked for, return what suffices for it as well.
 

@@ -17,7 +17,7 @@ Chosen = TypeVar("Chosen")
 
 @dataclass(frozen=True)
 class Conflict:
-    """Options that would have no effect in a case, which the error message names.
+    """Options that have no effect in a case; the error message names both.
 
     Attributes:
         options: as they are typed, separated by spaces.

@@ -1,4 +1,4 @@
-"""Passages of sections that `foucault show` prints: which are asked for, and when they come.
+"""Passages of sections for `foucault show`: which were requested, and their times.
 
 Where inputs are uncertain see `proved`.
 """
@@ -25,7 +25,7 @@ _MORE = 4  # swings after the one that a passage is expected in
 
 @dataclass(frozen=True)
 class Asked:
-    """A passage that was asked for: its number, and half of the width that its interval should have.
+    """A requested passage: its number, and the half-width in s that its interval should have.
 
     The width is None if none was asked for.
     """
@@ -46,7 +46,7 @@ def asked_passages(words: Sequence[str] | None) -> list[Asked]:
 
 
 def _asked(word: str) -> Asked:
-    expected = "the number of a passage, 50, or with half of the width wanted, 50=±0.1 (in s)"
+    expected = "the number of a passage, such as 50, or with half the wanted width in s, 50=±0.1"
     number, sign, width = word.partition("=")
     if not number.strip().isdecimal() or int(number) < 1:
         raise InputError("--passage", word, expected)
@@ -58,7 +58,7 @@ def _asked(word: str) -> Asked:
     except InputError:
         raise InputError("--passage", word, expected) from None
     if wanted <= 0:
-        raise InputError("--passage", word, expected, "A width is above 0.")
+        raise InputError("--passage", word, expected, "Give a width above 0.")
     return Asked(int(number), wanted)
 
 
@@ -68,7 +68,7 @@ def section_words(scene: Scene) -> tuple[str, ...]:
 
 
 def passage_name(word: str, number: int) -> str:
-    """Return what a passage is called."""
+    """Return the name of a passage."""
     return f"transit {number}" if word == XDOT else f"passage {number} of {word}"
 
 
@@ -117,7 +117,7 @@ def _computed(zeros: Any, word: str, number: int) -> dict[str, Any]:
 
 
 def passage_facts(passages: Sequence[dict[str, Any]]) -> Iterator[Fact]:
-    """Yield passages with the digits that their errors leave."""
+    """Yield passages, to the digits that their errors justify."""
     for passage in passages:
         word = passage["section"]
         if "number" not in passage:

@@ -1,4 +1,4 @@
-"""Progress of long work, on stderr: a bar on a terminal, elsewhere a line now and then.
+"""Progress of long work on stderr: a bar on a terminal, otherwise an occasional line.
 
 The remaining time follows from the rate of the last seconds, because work often starts slowly: code
 is compiled, processes begin, a first part is measured. Runs of different methods take from
@@ -31,7 +31,7 @@ _NEXT_NOTICE = 2.0  # each later notice comes after this factor of time
 
 
 class Move(Protocol):
-    """Moves a piece of work on."""
+    """A callback that reports progress."""
 
     def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
         """Say how much is done, the total if it was unknown before, and what is being done."""
@@ -88,7 +88,7 @@ class Work:
             self._samples.popleft()
 
     def begin(self, activity: str) -> None:
-        """Note what is being done from now on; what came before the first progress tells nothing about its rate."""
+        """Note the next activity; the time before its first progress does not count towards its rate."""
         if activity == self.activity:
             return
         self.activity = activity
@@ -114,7 +114,7 @@ class Work:
 
     @property
     def counted(self) -> str:
-        """How much is done: a part of the simulated time in per cent, or so many of so many."""
+        """How much is done: a percentage of the simulated time, or a number of a total."""
         if self.unit == "s":
             percent = 100 * min(self.completed / self.total, 1.0) if self.total else 0.0
             return f"{percent:.0f} % of {_rough(self.total)} s"
@@ -279,7 +279,7 @@ def _rough(amount: float) -> str:
 
 
 def duration_in_words(seconds: float) -> str:
-    """Return a rough time in the unit that suits it: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
+    """Return a rough duration in a suitable unit: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
     scales = (
         ("seconds", 1, 90),
         ("minutes", 60, 5400),

@@ -1,4 +1,4 @@
-"""Proofs that `foucault show` prints: intervals of a scene's swing, also by uncertain inputs.
+"""Proofs for `foucault show`: intervals of a scene's swing, for exact and for uncertain inputs.
 
 How they are printed: `proved_text`.
 """
@@ -75,7 +75,7 @@ def _texts(interval: Any) -> list[str] | None:
 def proved_ranges(
     scene: Scene, widths: dict[str, str], asked: Sequence[Asked], begin: Show
 ) -> dict[str, Any]:
-    """Return what is proved for uncertain inputs, over as much of the run as a proof holds for.
+    """Return what is proved for uncertain inputs, over as much of the run as the proof reaches.
 
     These are intervals of period, precession, full turn, first transits and passages, and the
     passages that were asked for. If the inputs are too uncertain for the whole run, or for a

@@ -76,9 +76,9 @@ def _interval_lines(ranges: dict[str, Any]) -> Iterator[str]:
     if ranges["useless"]:
         yield ""
         yield from paragraph(
-            "useless: so wide an interval holds every precession that the rotation of the site can cause, either "
-            "way. The proof takes the first and the last highest point as independent; in one pendulum they "
-            "err together.",
+            "useless: the interval contains every precession that the rotation of the site can cause, in either "
+            "direction. The proof takes the errors of the first and the last highest point as independent; in one "
+            "pendulum they are correlated.",
             "  ",
         )
 

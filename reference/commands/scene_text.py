@@ -1,4 +1,4 @@
-"""A scene for people: its inputs, and what follows from them without solving it, a fact a line."""
+"""A scene for people, one fact on each line: its inputs, and what follows from them without solving it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def title_of(scene: Scene) -> str:
 
 
 def input_facts(scene: Scene, flag_meanings: dict[str, str]) -> Iterator[Fact]:
-    """Yield the inputs of a scene, in words and with units; each flag and width has a line."""
+    """Yield the inputs of a scene in words and with units, with a line for each flag and each uncertain input."""
     if scene.source:
         yield "source", scene.source
     for flag, meaning in flag_meanings.items():
@@ -43,7 +43,7 @@ def input_facts(scene: Scene, flag_meanings: dict[str, str]) -> Iterator[Fact]:
 
 
 def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
-    """Yield what follows from the inputs of a scene; without a rest position, that there is none."""
+    """Yield what follows from the inputs of a scene, such as its rest position, or that it has none."""
     if "axis_distance_m" in derived:
         yield "Earth's axis", f"{derived['axis_distance_m']} m away"
     pull = f"{derived['pivot_gravity_m_s2']} m/s²"
@@ -116,7 +116,7 @@ def _rest(derived: dict[str, str]) -> str:
 
 
 def toward(number: str, positive: str, negative: str) -> str:
-    """Return a number without its sign, and the word for the side that the sign means."""
+    """Return the absolute value of a number, and the word for the side that its sign means."""
     if number.startswith("-"):
         return f"{number[1:]}{negative}"
     return f"{number.removeprefix('+')}{positive}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import typer
 
-from ..errors import FoucaultError, InputError, NotInstalledError, UnreachableError
+from ..errors import NOTHING, FoucaultError, InputError, NotInstalledError, UnreachableError
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings
 from .layout import echo, facts, heading, paragraph
@@ -50,20 +50,20 @@ _SCENE = scene_argument(
     "A scene's id, or the path of a TOML file; may be left out with --template."
 )
 _TEMPLATE = option(
-    "--template", "Print the scene as a TOML file to begin with, each field explained."
+    "--template", "Print the scene as a TOML file to start from, each field explained."
 )
 _EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
 _PROVED = option(
     "--proved",
-    "Also prove intervals of period and precession over the run, which takes as long as that.",
+    "Also prove intervals of period and precession over the run; this takes as long as proving the run.",
 )
 _SENSITIVITY = option(
-    "--sensitivity", "Also show how many digits the flow costs between release and end."
+    "--sensitivity", "Also show how many digits are lost to error growth between release and end."
 )
 _PASSAGE = option(
     "--passage",
-    "Also show when this passage of each section comes (without sections: this transit); 50=±0.1 asks which "
-    "uncertain input to know better for an interval of so many seconds; may be repeated.",
+    "Also show the time of this passage of each section (without sections: of this transit); 50=±0.1 also asks "
+    "which uncertain input to measure better for that accuracy (in s); may be repeated.",
     "N",
 )
 
@@ -110,7 +110,7 @@ def _show(options: _ShowOptions) -> None:
         return
     if scene is None or options.scene_word is None:
         expected = "a scene's id or the path of a TOML file"
-        raise InputError("SCENE", "nothing", expected, "`foucault scenes` lists the ids.")
+        raise InputError("SCENE", NOTHING, expected, "`foucault scenes` lists the ids.")
     from .cautions import warn
 
     parts = _parts(scene, options)
@@ -195,8 +195,8 @@ def _check_no_width(passages: list[str] | None) -> None:
     """
     for word in passages or ():
         if "=" in word:
-            expected = "the number of a passage alone: no input is uncertain"
-            raise InputError("--passage", word, expected, "Give widths by --uncertain.")
+            expected = "the number of a passage without a width, because no input is uncertain"
+            raise InputError("--passage", word, expected, "Say what is uncertain by --uncertain.")
 
 
 def _checked_parts(

@@ -1,4 +1,4 @@
-"""A scene as a TOML file to begin with, each field explained: `foucault show --template`."""
+"""`foucault show --template`: a scene as a TOML file to start from, each field explained."""
 
 from __future__ import annotations
 

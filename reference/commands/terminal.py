@@ -8,14 +8,14 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError, Stopped, check_whole, did_you_mean, in_words
+from ..errors import InputError, NoEffectError, Stopped, check_whole, did_you_mean, in_words
 from ..plain_text import plain_json
 from ..scenes.scene import Scene, field_names, full_name
 from ..scenes.shipped import scene_ids
 
 
 def completion(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
-    """Return what a shell asks for the names that begin as the word that is being typed."""
+    """Return the completion function of a shell, which lists the names that begin with the typed text."""
     return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
 
 
@@ -36,7 +36,7 @@ def option(
 def scene_argument(
     text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE"
 ) -> Any:
-    """Return the argument that is a scene, by its help and its word; a shell completes the ids."""
+    """Return the argument for a scene, with its help and its name; a shell completes the ids."""
     return typer.Argument(metavar=value, help=text, autocompletion=completion(scene_ids))
 
 
@@ -54,13 +54,13 @@ Uncertain = Annotated[
     list[str] | None,
     option(
         "--uncertain",
-        "Prove intervals for inputs in a range: length=±0.001, or +-0.001; may be repeated; "
-        "none: take them as exact (default: the scene's [uncertain]).",
+        "Prove intervals for an uncertain input: length=±0.001, or +-0.001; may be repeated; "
+        "none takes all as exact (default: the scene's [uncertain]).",
         "KEY=±W",
     ),
 ]
 # why an option is refused
-BESIDE_RANGES = "where inputs are uncertain, which --uncertain none takes as exact"
+BESIDE_RANGES = "while inputs are uncertain (--uncertain none takes them as exact)"
 EndTime = Annotated[
     str | None, option("--t-end", "End at this time, in s (default: the scene's).", "S")
 ]
@@ -72,7 +72,7 @@ Sections = Annotated[
     list[str] | None,
     option(
         "--section",
-        "Find other moments too: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
+        "Also find other moments: highest, lowest, 'gate 30', 'gate 30@0', 'turn 90'; may be repeated.",
         "WORD",
     ),
 ]
@@ -86,7 +86,7 @@ def emit(document: dict[str, Any]) -> None:
 
 @contextmanager
 def stoppable(outcome: str) -> Iterator[None]:
-    """Have Ctrl-C end the command with one line: what became of its work, or how to go on.
+    """Make Ctrl-C end the command with one line that says what became of its work, or how to resume.
 
     Raises:
         Stopped: it was interrupted.
@@ -98,7 +98,7 @@ def stoppable(outcome: str) -> Iterator[None]:
 
 
 def chosen(option: str, word: str, names: Iterable[str]) -> str:
-    """Return the word that was given to an option of few choices.
+    """Return the word given to an option with a few choices.
 
     Raises:
         InputError: it is none of them.
@@ -115,7 +115,7 @@ def replacements(
     unused: Mapping[str, str] | None = None,
     note: Callable[[str], None] | None = None,
 ) -> list[str]:
-    """Return the replacements of a scene's fields, by `--set` and by options of their own.
+    """Return the replacements of a scene's fields, from `--set` and from options such as `--t-end`.
 
     Args:
         assignments: those of `--set`.
@@ -135,8 +135,8 @@ def replacements(
         value = f"{field}={text}"
         same_end = option == "--t-end" and values.get(field) == value
         if field in values and not same_end:
-            expected = f"no such option together with --set {values[field]}"
-            raise InputError(option, text, expected, "Keep one.")
+            expected = f"no value together with --set {values[field]}"
+            raise InputError(option, text, expected, "Keep one of the two.")
         values[field] = value
     return list(values.values())
 
@@ -155,18 +155,18 @@ def _assigned(
         field = full_name(word)
         reason = unused.get(field) or unused.get(f"{field}{sign}{value.strip()}")
         if reason and note is None:
-            raise InputError("--set", assignment, "a field that makes a difference here", reason)
+            raise InputError("--set", assignment, "a field that has an effect here", reason)
         if reason and note is not None:
-            note(f"--set {assignment} makes no difference here. {reason}")
+            note(f"--set {assignment} has no effect here. {reason}")
         if field in values:
-            advice = f"{values[field]} stands before it: keep one."
-            raise InputError("--set", assignment, f"{field} once", advice)
+            advice = f"--set {values[field]} is given as well: keep one of the two."
+            raise InputError("--set", assignment, f"one value of {field}", advice)
         values[field] = assignment
     return values
 
 
 def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] | None:
-    """Return the widths by `--uncertain` and those of the scene, by name; None if all are exact.
+    """Return the widths from `--uncertain` and from the scene, by name; None if all inputs are exact.
 
     Raises:
         InputError: a word is not KEY=±WIDTH, or one key has two widths.
@@ -180,7 +180,8 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
         if not sign or not name:
             raise InputError("--uncertain", word, "KEY=±WIDTH, such as pendulum.length=±0.001")
         if name in typed:
-            raise InputError("--uncertain", word, f"one width of {name}")
+            advice = f"{name}={typed[name]} is given as well: keep one of the two."
+            raise InputError("--uncertain", word, f"one width of {name}", advice)
         typed[name] = width
     overridden = {full_name(name) for name in typed}
     widths = {name: width for name, width in scene.uncertain.items() if name not in overridden}
@@ -189,15 +190,14 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:
-    """Refuse options that would have no effect, such as those given "without --run".
+    """Refuse options that have no effect, such as those given "without --run".
 
     Raises:
         InputError: one of the options was given: its value is neither None, nor False, nor empty.
     """
     for option, value in options.items():
         if value is not None and value is not False and value != []:  # 0 was given
-            expected = f"no such option {why}"
-            raise InputError(option, _as_typed(value), expected, "It would have no effect.")
+            raise NoEffectError(option, _as_typed(value), why)
 
 
 def _as_typed(value: object) -> str:
@@ -210,7 +210,7 @@ def _as_typed(value: object) -> str:
 
 
 def check_workers(workers: int | None, cluster: str | None) -> None:
-    """Refuse a wrong number of workers, or one beside a cluster.
+    """Refuse a wrong number of workers, or any number together with a cluster.
 
     Raises:
         InputError: one of the two.

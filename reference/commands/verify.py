@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError
+from ..errors import NOTHING, InputError
 from ..scenes.shipped import golden_root, seals
 from .layout import echo, heading, paragraph
 from .progress import Show, progress
@@ -39,7 +39,7 @@ def command(
         folders = [golden_root() / name for name in seals()]
     if not folders:
         advice = "Make one with `foucault generate`."
-        raise InputError("PATH", "nothing", "a golden dataset", advice)
+        raise InputError("PATH", NOTHING, "a golden dataset", advice)
     checks = []
     for folder in folders:
         with progress() as show:
@@ -141,5 +141,6 @@ def _check_manifest(folder: Path) -> None:
     from ..system.checksums import SUMS
 
     if folder.is_dir() and not (folder / MANIFEST).exists():
-        expected = f"a golden dataset (a folder with {MANIFEST}), or a folder with {RANGES}, {PLAN} or {SUMS}"
+        dataset = f"a golden dataset (a folder with {MANIFEST})"
+        expected = f"{dataset}, ranges ({RANGES}), a sweep ({PLAN}) or a report ({SUMS})"
         raise InputError("PATH", str(folder), expected, "Make it with `foucault generate`.")

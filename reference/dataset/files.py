@@ -1,4 +1,4 @@
-"""The files of a golden dataset, read once: every byte hashed, every table well formed."""
+"""The files of a golden dataset, read once: the hash of each and the form of each table are checked."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ _PATTERNS = {
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
 _HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
 LINE_ENDS = (
-    "its lines end with CR LF and not with LF: copy the files as binary ones (in Git: `* -text`)"
+    "its lines end with CR LF instead of LF: copy the files in binary mode (in Git: `* -text`)"
 )
 
 
 @dataclass(frozen=True)
 class DatasetFiles:
-    """The files of a dataset, read once: each has the hash of its record and is well formed.
+    """The files of a dataset, read once: each has the recorded hash and the right form.
 
     Attributes:
         folder: their folder.
@@ -242,7 +242,7 @@ def _with_lf(data: bytes) -> bytes:
 def _no_dataset(folder: Path) -> InputError:
     """Return the error for a folder that is no dataset; its advice depends on what is there."""
     if (folder / RANGES).is_file():
-        advice = "These are ranges: reference.load_ranges reads them."
+        advice = "The folder contains ranges: reference.load_ranges reads them."
         return InputError("PATH", str(folder), "a golden dataset", advice)
     names = () if folder.exists() else seals()
     advice = did_you_mean(folder.name, names, "Make it with `foucault generate`.")
@@ -264,7 +264,7 @@ def _table(name: str, text: str, manifest: Manifest) -> Sheet:
     count = _count(kind, manifest)
     if text.count("\n") != count + 1 or not text.endswith("\n"):
         rows_there = text.count("\n") - 1
-        raise ValueError(f"{rows_there} rows, the manifest counts {count}")
+        raise ValueError(f"has {rows_there} rows, but the manifest says {count}")
 
     row_pattern = re.compile(",".join(f"(?:{pattern})" for pattern in patterns.values()), re.ASCII)
     rows = []

@@ -31,7 +31,7 @@ _Hexfloat = Annotated[str, Field(pattern=r"^0x[01]\.[0-9a-f]{1,13}p[+-][0-9]{1,4
 
 
 class FunctionRecord(ManifestPart):
-    """`function.json`: what the doubles of `function.f64` are, and how far their values may be from the truth."""
+    """`function.json`: the meaning of the doubles in `function.f64`, and bounds on the function's errors."""
 
     schema_version: Literal[3]  # manifest.FORMAT
     id: Name
@@ -46,7 +46,7 @@ class FunctionRecord(ManifestPart):
 
     @staticmethod
     def following(manifest: Manifest) -> dict[str, Any]:
-        """Return what follows from the manifest of the dataset."""
+        """Return the fields that follow from the manifest of the dataset."""
         columns = {"t", *STATE}
         return {
             "schema_version": manifest.schema_version,
@@ -58,13 +58,13 @@ class FunctionRecord(ManifestPart):
 
     @classmethod
     def of(cls, proved: Any, manifest: Manifest) -> FunctionRecord:
-        """Describe a function as it was proved, in the dataset of a manifest."""
+        """Return the description of a proved function for the dataset of a manifest."""
         bounds = {name: proved.bounds[name] for name in STATE}
         return cls.model_validate({**cls.following(manifest), "bounds": bounds, **proved.facts})
 
 
 def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunction]:
-    """Return the description of a function, and what evaluates it.
+    """Return the description of a golden function, and the function itself.
 
     Args:
         text: of `function.json`.
@@ -94,17 +94,17 @@ def _check_form(record: FunctionRecord, text: str, data: bytes) -> None:
         ValueError: the first rule that is broken.
     """
     if record.text() != text:
-        raise ValueError("is not in the form in which it is written")
+        raise ValueError("is not in the form in which this project writes it")
     if tuple(record.bounds) != STATE:
         raise ValueError(f"bounds: must name {', '.join(STATE)}")
     components = POSITION[:2] if record.length_squared else POSITION
     if tuple(record.components) != components:
-        raise ValueError("components: must be x, y, and z if there is no length_squared")
+        raise ValueError("components: must be x, y and, without length_squared, z")
     pieces = len(record.times) - 1
     if pieces < 1 or float.fromhex(record.times[0]) != 0:
         raise ValueError("times: must increase from 0")
     if len(data) != 8 * pieces * len(components) * (record.degree + 1):
-        raise ValueError("function.f64 has another size")
+        raise ValueError("function.f64 has the wrong size")
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ def _transits(function: GoldenFunction, scene: Scene, manifest: Manifest) -> _Si
         if len(zeros.times) >= count:
             break
     if scene.run.transits and count != len(zeros.times):
-        raise ValueError(f"xdot has {len(zeros.times)} zeros, the manifest counts {count}")
+        raise ValueError(f"xdot has {len(zeros.times)} zeros, but the manifest says {count}")
     return _SignChanges(zeros.times[:count], zeros.signs[:count])
 
 

@@ -1,4 +1,4 @@
-"""A golden dataset as read: its columns as doubles, texts or fractions, and states between."""
+"""A golden dataset as read: its columns as doubles, texts or fractions, and states at times between its rows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..errors import DatasetError, InputError, counted
+from ..errors import DatasetError, Described, InputError, counted
 from ..numbers.columns import POSITION, STATE, Framed, GridColumns, place_of
 from ..numbers.function import GoldenFunction, States, moments_of
 from ..numbers.precision import Array
@@ -33,7 +33,7 @@ _PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two dou
 
 @dataclass(frozen=True, repr=False)
 class PrintedTable(Framed):
-    """A CSV table of a dataset: columns of decimals, by name, and the largest bound of each."""
+    """A CSV table of a dataset: columns of decimals by name, and the largest error bound of each."""
 
     _sheet: Sheet
     _bounds: Mapping[str, str]
@@ -63,7 +63,7 @@ class PrintedTable(Framed):
         return [Fraction(Decimal(text)) for text in self.decimals(name)]
 
     def bound(self, name: str) -> list[Fraction]:
-        """Return bounds on the errors of a column's printed values.
+        """Return bounds on the errors of a column's printed values: proven at the level enclosed, otherwise estimated.
 
         A transit time has a bound of its own; for other columns it is the largest of all rows.
         """
@@ -72,7 +72,9 @@ class PrintedTable(Framed):
         # a table without rows has no bounds
         bounded = self._bounds if len(self) else self.columns
         if name not in bounded:
-            raise KeyError(f"a dataset bounds {', '.join(['t', *self._bounds])}, not {name!r}")
+            raise KeyError(
+                f"there is no bound of {name!r}; there are {', '.join(['t', *self._bounds])}"
+            )
         return [Fraction(self._bounds[name])] * len(self) if len(self) else []
 
     def decimals(self, name: str) -> list[str]:
@@ -85,9 +87,10 @@ class PrintedTable(Framed):
 class Golden(GridColumns):
     """A golden dataset, as read from disk: the same columns as a `Solution`, as printed.
 
-    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have
-    `table["x"]`, the same, `table.exact("x")` as fractions, `table.bound("x")`, and
-    `table.decimals("x")`, the printed texts.
+    `golden.t`, `.x`, … are the columns of the grid as binary64 arrays of shape (rows,). Of both
+    tables, `table["x"]` is such an array, `table.exact("x")` are fractions, `table.bound("x")`
+    are bounds on the errors (proven at the level enclosed, otherwise estimated), and
+    `table.decimals("x")` are the printed texts.
 
     Attributes:
         path: the folder.
@@ -96,9 +99,9 @@ class Golden(GridColumns):
         grid: `grid.csv`.
         transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically
             zero.
-        function: the golden function, None if it has none; `at` serves all the same.
-        sections: the rows of `sections.csv` of each section that the scene asks for, by its word;
-            none where the dataset is a function alone.
+        function: the golden function, or None; `at` works without it too.
+        sections: the rows of `sections.csv` for each section of the scene, by its word; empty if the
+            dataset has only a function.
     """
 
     path: Path
@@ -110,7 +113,7 @@ class Golden(GridColumns):
     sections: Mapping[str, PrintedTable] = field(default_factory=dict)
 
     def at(self, t: npt.ArrayLike) -> States:
-        """Return the states at times in s, of any shape and in any order, with their bounds.
+        """Return the states at times in s (any shape, any order), with bounds on their errors.
 
         They come from the golden function, or the scene is solved again (needs heyoka, takes
         longer) and its numbers are rounded to doubles.
@@ -144,7 +147,7 @@ class Golden(GridColumns):
 
     @property
     def directions(self) -> list[int]:
-        """+1 where xdot goes from - to +, per transit."""
+        """For each transit, +1 if xdot goes from - to +, and -1 otherwise."""
         return [int(text) for text in self.transits.decimals("direction")]
 
     def decimals(self, column: str) -> list[str]:
@@ -210,8 +213,8 @@ class _Sections(dict[str, PrintedTable]):
     """The passages of each section, by its word; a word that is not there is refused."""
 
     def __missing__(self, word: str) -> PrintedTable:
-        expected = f"a section of sections.csv, of which there are: {', '.join(self) or 'none'}"
-        advice = "reference.solve(golden.scene, sections=…) finds any."
+        expected = f"a section in sections.csv ({', '.join(self) or 'it has none'})"
+        advice = "reference.solve(golden.scene, sections=…) finds the passages of others."
         raise InputError("sections", word, expected, advice)
 
 
@@ -230,7 +233,7 @@ def _sections(files: DatasetFiles) -> _Sections:
 
 @dataclass(frozen=True)
 class Dense:
-    """A trajectory at chosen times, finer than binary64.
+    """A trajectory at chosen times, more accurate than binary64.
 
     Attributes:
         t: times in s, shape (rows,), increasing, without repeats.
@@ -248,7 +251,7 @@ class Dense:
 
     @classmethod
     def of(cls, times: Array, table: Any, rows: Any) -> Dense:
-        """Build from some rows of a table that has bounds."""
+        """Return the trajectory in some rows of a table with bounds."""
         doubles = []
         remainders = []
         bounds = []
@@ -277,7 +280,7 @@ def _as_pair(value: Fraction) -> tuple[float, float]:
 
 
 def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
-    """Evaluate the solution of a golden dataset at any times that it spans.
+    """Return the states of a golden dataset's solution at any times in its span.
 
     Args:
         golden: the dataset: its rows are taken where all times are those of its grid.
@@ -295,7 +298,7 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     later = float(grid[-1] - grid[-2]) + _ROUNDED * float(grid[-1])
     requested = np.unique(moments_of(times, grid[-1], later))
     if not requested.size:
-        raise InputError("t", "no times", "at least one time in s")
+        raise InputError("t", Described("no times"), "at least one time in s")
     exact_times = [Fraction(t) for t in requested.tolist()]
     row = {t: i for i, t in enumerate(grid)}
     if row.keys() >= set(exact_times):

@@ -33,7 +33,7 @@ _OPTION_FIELDS = ("run.t_end=", "run.digits=", "run.level=", "run.transits=", "r
 
 
 def options_in(command: str) -> str | None:
-    """Return the options in a dataset's command that say how it is made, None if there are none."""
+    """Return the options in a dataset's command that say how it is made; None if there are none."""
     match = _OPTIONS.search(command)
     return match and match[0]
 
@@ -57,7 +57,7 @@ class Making:
         """
         match = _OPTIONS.search(command)
         if match is None:
-            raise ValueError(f"no options that say how a dataset is made in {command!r}")
+            raise ValueError(f"the command {command!r} has no options for making a dataset")
         confirm = "none" if match["no_confirm"] else match["confirm"] or "whole"
         return cls(
             engine=match["engine"],
@@ -97,7 +97,7 @@ class Making:
 
 
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
-    """Return how a dataset is made if nothing else is asked for.
+    """Return how a dataset is made by default.
 
     A shipped dataset is made as the index says, wherever it is written. A new one that is to ship
     is made with limbs, so that heyoka's confirmation is an independent code.

@@ -57,7 +57,7 @@ def text_of(document: dict[str, Any]) -> str:
 
 
 class ManifestPart(BaseModel):
-    """A document or a part of one: frozen, without extra keys; read from a dictionary or from what has its names."""
+    """A document or a part of one, frozen and without extra keys; read from a dictionary or an object."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, from_attributes=True)
 
@@ -67,7 +67,7 @@ class ManifestPart(BaseModel):
 
 
 class Bounds(ManifestPart):
-    """How far any printed number may be from the truth, rounding to its digits included: m, m/s, s, m/s².
+    """Bounds on the errors of all printed numbers, rounding included, in m, m/s, s and m/s².
 
     The first three are the largest of their kind, `transit_s` only where there are transits; `grid`
     and `transits` are by column, the largest of all rows.
@@ -129,7 +129,7 @@ class Possible(ManifestPart):
 
 
 class SectionsRecord(ManifestPart):
-    """What `sections.csv` holds: digits and largest bound of each column; of each section its passages.
+    """`sections.csv`: decimals and largest bound of each column, and the number of passages of each section.
 
     `counts` are its rows, and `possible` intervals in which the proof could not decide.
     """
@@ -141,7 +141,7 @@ class SectionsRecord(ManifestPart):
 
 
 class EnclosureRecord(ManifestPart):
-    """The proof: its method, size and largest radii, and the bits to which the run that was proved agrees with it."""
+    """The proof: its method, size and largest radii, and the bits to which the proved run agrees with it."""
 
     method: Name
     prec: Count
@@ -256,7 +256,7 @@ class Manifest(ManifestPart):
             needed.append("sections.csv")
         lacking = [name for name in needed if name not in self.files]
         if lacking and not self.alone:
-            yield f"files: {' and '.join(lacking)} must be there, but for a golden function alone"
+            yield f"files: {' and '.join(lacking)} must be there, unless the dataset is a golden function alone"
 
         asks_for_sections = "sections" in self.scene.get("run", ())
         if asks_for_sections != (self.sections is not None):
@@ -282,14 +282,14 @@ class Manifest(ManifestPart):
         return self.model_copy(update={"seal": self.expected_seal()})
 
     def bound(self, table: Kind, column: str) -> Fraction:
-        """Return the bound on a column's printed numbers, the largest of all rows."""
+        """Return the largest error bound of a column's printed numbers."""
         if table == "sections" and self.sections:
             return Fraction(self.sections.bounds[column])
         return Fraction(getattr(self.bounds, table)[column])
 
 
 def differences(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:
-    """Yield each field in which two documents differ: its place, and both values."""
+    """Yield each field in which two documents differ, as its path and both values."""
     if isinstance(old, dict) and isinstance(new, dict):
         for key in {**old, **new}:
             inner = f"{place}.{key}" if place else key

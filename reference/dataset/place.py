@@ -1,4 +1,4 @@
-"""The id of a dataset, the folder that it is written to, and the folder that a name means."""
+"""The id of a dataset, the folder it is written to, and the folder that a name stands for."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MAX_ID = 160  # characters; more changes than fit are named by their hash
 
 
 def changes(scene: Scene, base: Scene) -> list[str]:
-    """Return the fields of a scene that are not those of another, each as section.key=value."""
+    """Return the fields in which a scene differs from another, each as section.key=value."""
     before = by_field(scene_inputs(base))
     after = by_field(scene_inputs(scene))
     return [f"{field}={value}" for field, value in after.items() if before.get(field) != value]
@@ -45,14 +45,14 @@ def dataset_id(scene: Scene, base: Scene | None = None) -> str:
 
 
 def id_with(name: str, sign: str, words: str) -> str:
-    """Return an id and, behind a sign, its changes: as words, or as a hash if they are too long."""
+    """Return an id with its changes appended after a sign, as words, or as a hash if they are too long."""
     if len(name) + len(words) >= MAX_ID:
         words = f"sha256={hashlib.sha256(words.encode()).hexdigest()[:16]}"
     return f"{name}{sign}{words}"
 
 
 def changes_in(name: str) -> list[str]:
-    """Return the changes that an id names, each as section.key=value; none if it has a hash."""
+    """Return the changes in an id, each as section.key=value; none if the id has a hash."""
     _, _, changed = name.partition("+")
     if changed.startswith("sha256="):
         return []
@@ -85,7 +85,7 @@ def ships(folder: Path) -> bool:
 
 
 def golden_folder(name: str | Path) -> Path:
-    """Return the folder that a name means: a path, or an id in ./golden, data/golden, the package.
+    """Return the folder that a name stands for: a path, or an id in ./golden, data/golden or the package.
 
     Raises:
         InputError: it is neither text nor a path.

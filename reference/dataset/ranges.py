@@ -36,7 +36,7 @@ _WIDER = ("possible", "sections")  # intervals that may be wider than those that
 
 
 def ranges_id(ranges: Ranges) -> str:
-    """Return the id: that of the scene's dataset, with the half-widths.
+    """Return the id of ranges: that of the scene's dataset, with the half-widths of the inputs.
 
     Example: paris+-pendulum.length=0.001.
     """
@@ -45,7 +45,7 @@ def ranges_id(ranges: Ranges) -> str:
 
 
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
-    """Write ranges: `ranges.json`, with scene, box and proof, and the tables; whole or not at all.
+    """Write ranges, completely or not at all: `ranges.json` (scene, box and proof) and the tables.
 
     Args:
         ranges: what `prove_ranges` returned.
@@ -57,7 +57,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
     """
     if not isinstance(ranges, Ranges):
         raise InputError(
-            "ranges", ranges, "what prove_ranges returns", "A Solution is written by write."
+            "ranges", ranges, "what prove_ranges returns", "To write a Solution, use write."
         )
     folder = checked_path("folder", folder, "the folder to write to")
     check_target(folder, RANGES)
@@ -70,7 +70,7 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
 
 
 def load_ranges(name: str | Path) -> Ranges:
-    """Read ranges by id or path, with intervals as printed and no proof; check seal and hashes.
+    """Read ranges by id or path, check seal and hashes, and return the intervals as printed.
 
     Raises:
         InputError: there are none.
@@ -81,7 +81,7 @@ def load_ranges(name: str | Path) -> Ranges:
 
 
 def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = False) -> list[str]:
-    """Prove ranges again, and have trusted code compare their files with that.
+    """Prove ranges again, and let trusted code compare their files with the new proof.
 
     Args:
         folder: their folder.
@@ -123,7 +123,7 @@ def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
     try:
         manifest = json_document(folder / RANGES, "PATH")
     except FileNotFoundError:
-        advice = "`foucault generate SCENE --uncertain …` makes them."
+        advice = "Make them by `foucault generate SCENE --uncertain …`."
         raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
     try:
         texts = _checked_texts(folder, manifest)
@@ -231,7 +231,7 @@ def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
     try:
         check_ranges(texts, ranges.proof.proved)
     except (ArithmeticError, LookupError, ValueError) as error:
-        return [f"what is printed does not hold what is proved: {error}"]
+        return [f"the printed intervals do not contain the proven ones: {error}"]
     return []
 
 
@@ -249,7 +249,7 @@ def _other_facts(texts: dict[str, str], again: Ranges) -> Iterator[str]:
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
-    """Return the ends of the period's interval as text, by transits.csv; None if it is open."""
+    """Return the ends of the period's interval as text, from transits.csv; None if it has no end."""
     period = with_fields(ranges, proof=None).period
     return period and list(ends(*period))
 

@@ -1,4 +1,4 @@
-"""The manifest of a solution, still without files: scene, run, bounds, checks and proof."""
+"""The manifest of a solution, before its files are known: scene, run, bounds, checks and proof."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of 
 def manifest_of(
     solution: Solution, sheets: Mapping[str, Sheet], name: str | None, tables: bool
 ) -> Manifest:
-    """Return the manifest of a solution, still without files and seal.
+    """Return the manifest of a solution, without the records of its files and without its seal.
 
     Args:
         solution: what is described.
@@ -174,7 +174,7 @@ def bounds_of(grid: dict[str, str], transits: dict[str, str]) -> Bounds:
 
 
 def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
-    """Return a manifest's word on its transits: whether all are there, and otherwise why not."""
+    """Return what a manifest says of its transits: "complete", or why they are not."""
     if not scene.run.transits:
         return "not asked for"
     if vanishes:

@@ -89,7 +89,7 @@ def _sheets(solution: Solution) -> dict[str, Sheet]:
 
 
 def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
-    """Have trusted code compare the files of a dataset with what was proved.
+    """Let trusted code compare the files of a dataset with what was proved.
 
     Without a proof, or a manifest that claims one, nothing is compared.
 
@@ -119,7 +119,7 @@ def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
 
 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:
-    """Return the files that follow from manifest and tables: page for people, and vectors."""
+    """Return the files that follow from manifest and tables: the page for people, and the vectors."""
     texts = {"certified.txt": _page(manifest, tables["grid.csv"], tables.get("transits.csv"))}
     if "grid.binary64.csv" in tables:
         texts["vectors.json"] = vectors(manifest, tables).text()
@@ -228,7 +228,7 @@ def _how_to(manifest: Manifest) -> Iterator[str]:
 
 
 class Value(ManifestPart):
-    """A number: as a decimal, as the nearest double, and how far the decimal may be from the truth, in its unit."""
+    """A number as a decimal and as the nearest double, with a bound on the decimal's error, in the same unit."""
 
     decimal: Decimal
     hexfloat: Name
@@ -256,7 +256,7 @@ class TransitVector(ManifestPart):
 
 
 class Vectors(ManifestPart):
-    """`vectors.json`: the inputs of a scene, and what a program has to give for them."""
+    """`vectors.json`: the inputs of a scene, and the results that a program must return for them."""
 
     schema_version: int
     id: Name

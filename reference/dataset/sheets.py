@@ -99,7 +99,7 @@ def transits_sheet(solution: Solution) -> Sheet:
 
 
 def sections_sheet(solution: Solution) -> Sheet:
-    """Return `sections.csv`: every passage of each section, in the order of the scene's words."""
+    """Return `sections.csv`: every passage of each section, in the order in which the scene lists the sections."""
     rows = list[tuple[str, ...]]()
     for word, passages in solution.sections.items():
         decimals = decimals_of_zeros(solution, word)  # the same for every section

@@ -100,7 +100,7 @@ def _unconfirmed(manifest: Manifest) -> list[str]:
 
 
 def problems_of(folder: Path) -> list[str]:
-    """Return a sentence for each problem of a dataset that shows without integrating.
+    """Return a sentence for each problem of a dataset that is found without integrating.
 
     Raises:
         InputError: there is no dataset at `folder`.

@@ -1,4 +1,4 @@
-"""Write a dataset: its files are checked elsewhere and put in place together, or not at all."""
+"""Write a dataset: its files are checked in a temporary folder, then put in place together or not at all."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..errors import DatasetError, InputError, checked_path
+from ..errors import NOTHING, DatasetError, InputError, checked_path
 from ..numbers.columns import POSITION
 from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution, grid_decimals
@@ -34,14 +34,16 @@ def check_target(folder: Path, mark: str = MANIFEST) -> None:
         InputError: the target cannot be written, or something else is in its place.
     """
     if folder.exists() and not folder.is_dir():
-        raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
+        raise InputError(
+            "--out", str(folder), "a folder", "There is a file of that name: choose another name."
+        )
     names = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
     foreign = names - {mark, *ALWAYS, *OPTIONAL}
     if foreign or (names and mark not in names):
-        expected = f"a new or empty folder, or {_OLDER[mark]} and nothing else"
+        expected = f"a new or empty folder, or one with {_OLDER[mark]} and nothing else"
         advice = "Nothing was changed."
         if foreign:
-            advice = f"Nothing was changed: {min(foreign)!r} is there."
+            advice = f"The folder contains {min(foreign)!r}. Nothing was changed."
         raise InputError("--out", str(folder), expected, advice)
     with writable_place(folder):
         pass
@@ -61,7 +63,7 @@ def writable_place(folder: Path) -> Iterator[tuple[Path, Path]]:
             yield work, target
     # RuntimeError: links in a circle, on older versions of Python
     except (OSError, RuntimeError) as error:
-        expected = "a writable place with room for a dataset"
+        expected = "a folder that can be written to, with room for a dataset"
         advice = f"{getattr(error, 'strerror', None) or error}."
         raise InputError("--out", str(folder), expected, advice) from None
 
@@ -89,16 +91,16 @@ def write(
     folder = checked_path("folder", folder, "the folder to write to")
     if not tables and solution.function is None:
         expected = "a golden function, or tables"
-        raise InputError("tables", "none", expected, "Solve it with function=True.")
+        raise InputError("tables", NOTHING, expected, "Solve the scene with function=True.")
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
-        advice = "What ships in data/golden does not rest on compiled code."
-        raise InputError("audit", "no audit", "an audited proof", advice)
+        advice = "Proofs in data/golden must not rely on compiled code: solve with audit=True."
+        raise InputError("audit", NOTHING, "an audited proof", advice)
     write_texts(render(solution, name, tables=tables), folder, solution)
     return folder
 
 
 def filled(work: Path, texts: Mapping[str, Content]) -> Path:
-    """Return a new folder in `work` with these files, written through to the disk."""
+    """Return a new folder in `work` with these files, flushed to disk."""
     new = work / "new"
     new.mkdir()
     for file, text in texts.items():
@@ -143,7 +145,7 @@ def _content(path: Path) -> Content:
 
 
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
-    """Return what `generate --json` prints on a dataset, with measurements that are in no file."""
+    """Return what `generate --json` prints about a dataset, including measurements that no file contains."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=Fraction)
     return {

@@ -1,4 +1,4 @@
-"""The approximant of a proof: an integrator's Taylor steps, turned to the axes of the proof.
+"""The approximant of a proof: an integrator's Taylor steps in the axes of the proof.
 
 Untrusted: the bound measures whatever this module gets wrong. A Taylor expansion serves both sides of
 its centre, so only every second one of a chain has to be proved: `pair` joins two time steps into one.

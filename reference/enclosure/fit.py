@@ -35,13 +35,13 @@ WIDER = Fraction(GRAIN + 1, GRAIN)  # unit of a step's series that has to reach 
 
 
 class FunctionFit:
-    """Proposes a piece for each step of a course: the series of its own polynomials, in doubles."""
+    """Proposes a piece of the golden function for each step of a course, from the step's own polynomials."""
 
     def __init__(self, course: Course) -> None:
         self.following = Following(course, 2 if _stays_deep(course.balls) else 3)
 
     def add(self) -> None:
-        """Propose the piece of the step that was proved last, or several if z would round too much."""
+        """Propose the piece of the last proved step, or several if rounding would cost z too many digits."""
         following = self.following
         assert following.covered is not None
         piece = following.covered.piece
@@ -71,7 +71,7 @@ class FunctionFit:
         return float(rounding) / ulp(float(self.following.balls.inputs.length))
 
     def finish(self) -> ProvedFunction:
-        """Finish the proof, with the lowest degree that costs next to nothing."""
+        """Finish the proof, with the lowest degree that loses almost no accuracy."""
         pieces = self.following.pieces
         count = self.following.count
         sizes = np.abs(np.array([piece.series for piece in pieces])).reshape(-1, count, CUT)
@@ -113,7 +113,7 @@ def _stays_deep(balls: SceneBalls) -> bool:
 
 
 def on_doubles(steps: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
-    """Yield steps that meet at doubles: each is cut a little earlier, and the next one begins there."""
+    """Yield steps that meet at doubles: each is cut slightly short, and the next one begins there."""
     begin = Fraction(0)
     for step in steps:
         far = begin < step.centre - step.h

@@ -21,7 +21,7 @@ ILL = 13  # condition number (Frobenius) above which the frame is made orthogona
 
 
 class Linearised(NamedTuple):
-    """Coefficients in s, the first axis of each but of the matrix, where it is the second one."""
+    """Coefficients of powers of s, along the first axis of each array; of the matrix, along the second."""
 
     field: Any  # the matrix of the linearised equations, shape (6, ORDER + 1, 6)
     p: Any  # shape (ORDER + 1, 3)
@@ -29,7 +29,7 @@ class Linearised(NamedTuple):
 
 
 class ColumnSource:
-    """Proposes six columns a step: the flow about (p, K), from a well-conditioned frame."""
+    """Proposes six columns for each step: the linearised flow about (p, K), from a well-conditioned frame."""
 
     def __init__(self, balls: SceneBalls) -> None:
         """Read the constants as floats."""

@@ -1,4 +1,4 @@
-"""Where a zero may be: times on both sides of it, close by. Untrusted: signs are proved there."""
+"""Guess times close to a zero, on both sides of it. Untrusted: the proof checks the signs there."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MARGIN = 1 + arb(2) ** -8  # farther from the zero than the form is uncertain
 
 
 def around_zero(leaves: Sequence[Any]) -> tuple[arb, arb]:
-    """Return exact times on both sides of a zero of the form's polynomial, about: proposals.
+    """Return exact times close to a zero of the form's polynomial, one on each side: proposals.
 
     Args:
         leaves: neighbouring `Leaf`s, of which the middle one is taken.

@@ -1,4 +1,4 @@
-"""Run a proof: choose method and bits, take an approximant's steps, try again with more bits.
+"""Run a proof: choose method and bits, take an approximant's steps, and try again with more bits if it fails.
 
 Untrusted: no bound is computed here. Every step goes to the trusted `Course`, whose results are
 passed on as they are.
@@ -131,14 +131,16 @@ def enclose(
         IntegrationError: the audit found that compiled code returned wrong sums.
     """
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
-        raise ValueError("times: got a sequence that is empty, negative or not increasing")
+        raise ValueError(
+            "times: got a sequence that is empty, negative or not increasing, expected increasing times in s from 0"
+        )
     request = _Request(inputs, list(times), radius, zeros, progress, audit, function)
     try:
         plan = plan_for(inputs, times[-1], radius, method, lost)
     except (ArithmeticError, ValueError) as error:
-        advice = "Its numbers are too far apart: check lengths, rates and angles."
+        advice = "Its numbers differ too much in size: check lengths, rates and angles."
         raise UnreachableError(
-            f"enclosure: no precision can be chosen for this scene; {error}.", advice
+            f"enclosure: cannot choose a precision for this scene; {error}.", advice
         ) from None
 
     reason = "nothing tried"
@@ -156,8 +158,8 @@ def enclose(
         if plan.bits > MAX_BITS:
             break
     raise UnreachableError(
-        f"enclosure: no bound of {short(radius)} m at {float(times[-1]):g} s; {reason}.",
-        "Ask for fewer digits or a shorter time.",
+        f"enclosure: cannot prove a bound of {short(radius)} m at t = {float(times[-1]):g} s; {reason}.",
+        "Ask for fewer digits or a shorter run.",
     )
 
 
@@ -166,7 +168,7 @@ def _attempt(request: _Request, plan: ProofPlan, approximant: Approximant) -> En
     steps = iter(approximant(plan.bits))
     first = next(steps, None)
     if first is None:
-        raise UnreachableError("enclosure: the approximant is empty.")
+        raise UnreachableError("enclosure: the approximant has no steps.")
     attempt = _PointAttempt(request, plan, first)
     all_steps: Iterable[TaylorStep] = chain([first], steps)
     if request.function:
@@ -333,7 +335,9 @@ def demand_rest_positions(balls: SceneBalls, words: tuple[str, ...]) -> None:
         try:
             form(balls, word)
         except ArithmeticError:
-            reason = "in so fast a rotation a proof singles none out, unlike lower levels"
+            reason = (
+                "at so fast a rotation the proof finds no single rest position, unlike lower levels"
+            )
             raise gate_without_rest(word, reason) from None
 
 
@@ -363,13 +367,13 @@ def plan_for(
     if lost and method == "radius":
         bits += lost(bits)
     if bits > MAX_BITS:
-        reason = f"enclosure: {short(radius)} m would take more than {MAX_BITS} bits."
+        reason = f"enclosure: a bound of {short(radius)} m would need more than {MAX_BITS} bits."
         raise UnreachableError(reason, "Ask for fewer digits.")
     return ProofPlan(method, bits)
 
 
 def magnitude(ratio: Fraction) -> int:
-    """Return the logarithm to base 2, about."""
+    """Return an estimate of the logarithm to base 2."""
     return ratio.numerator.bit_length() - ratio.denominator.bit_length()
 
 

@@ -1,4 +1,4 @@
-"""Proposals for derivatives to inputs: their linear equations, in double precision. Untrusted."""
+"""Proposals for derivatives with respect to inputs, from their linear equations in double precision. Untrusted."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FINE = 50  # bits of a coefficient beyond the largest
 
 
 def scales_of(balls: BoxBalls, names: list[str]) -> dict[str, int]:
-    """Return powers of two by which derivatives become about 1, by input."""
+    """Return, by input, powers of two that scale the derivatives to about 1."""
     w0 = float(balls.w0)
     scales = {}
     for name in names:

@@ -93,7 +93,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class RunOptions:
-    """Which results a run gives of each row beside its state at the end, and whether it is moved.
+    """Which results a run returns for each row besides its final state, and whether the run is perturbed.
 
     Attributes:
         transits: count the zeros of xdot in 0 < t <= t_end, all of them located, and judge them.
@@ -169,7 +169,7 @@ class Outcomes:
 
     @classmethod
     def empty(cls, count: int) -> Self:
-        """Return the outcomes of `count` rows, to be filled in: nothing found, nothing known."""
+        """Return empty outcomes of `count` rows, to be filled in."""
         columns: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
         columns["fate"] = np.zeros(count, np.int8)
         columns["state"] = np.full((count, 6), np.nan)
@@ -216,18 +216,18 @@ class Batch(OptionalEngine, ABC):
     @property
     @abstractmethod
     def identity(self) -> str:
-        """All that decides the digits, as one line: name, orders, tolerance, versions."""
+        """Everything that the digits depend on, in one line: name, orders, tolerance, versions."""
 
     @abstractmethod
     def prepare(self, options: RunOptions) -> None:
-        """Compile what such rows without drag need, where it is not done yet."""
+        """Compile the code that such rows without drag need, unless it is compiled already."""
 
     @abstractmethod
     def solve(self, rows: Rows, options: RunOptions) -> Outcomes:
-        """Solve rows in the calling thread, without blocking others; `fate` tells which failed."""
+        """Solve rows in the calling thread, without blocking others; `fate` says which failed."""
 
     def compiling_s(self, sections: bool) -> float:
-        """Return the CPU seconds that compiling takes here: none for what is kept on disk."""
+        """Return the CPU seconds that compiling will take: 0 for code that is kept on disk."""
         return sum(self.compile_s[: 1 + sections])
 
 
@@ -255,7 +255,7 @@ class PlumbAxes:
 
     @classmethod
     def of(cls, rows: Rows) -> Self:
-        """Turn rows into these axes."""
+        """Return the rows' constants and releases in these axes."""
         # many names, as each is a quantity of one formula
         of = DoubleDouble.from_pairs
         north = of(rows.pull[:, 1])
@@ -271,7 +271,7 @@ class PlumbAxes:
         return cls(size, sin, cos, (turn[0], turn[1]), n, V, speed)
 
     def forms(self, rows: Rows) -> Array:
-        """Return a, b and d of the rows' forms, shape (7, n).
+        """Return the coefficients a, b and d of each row's form a·n + b·n' - d, shape (7, n).
 
         In these axes n is counted from the lowest point, (0, 0, -1).
         """
@@ -291,7 +291,7 @@ def moved(numbers: Array, way: int) -> Array:
 
 
 def plumb_line(north: Any, up: Any, size: Any, vanishes: Array) -> tuple[Any, Any]:
-    """Return the unit vector up along -c, its parts north and up.
+    """Return the north and up components of the unit vector along -c, the upward plumb line.
 
     Where there is no force `vanishes` is 1, and it is the vertical; elsewhere `vanishes` is 0.
     """
@@ -299,7 +299,7 @@ def plumb_line(north: Any, up: Any, size: Any, vanishes: Array) -> tuple[Any, An
 
 
 def turned(north: Any, up: Any, sin: Any, cos: Any) -> tuple[Any, Any]:
-    """Return a vector's parts in the meridian and along the plumb line.
+    """Return a vector's components in the meridian and along the plumb line.
 
     The line leans by (sin, cos) from the vertical.
     """

@@ -114,7 +114,7 @@ class _SectionSearch:
                 g = g[1:]
         if not g or max(map(abs, g)) <= noise:
             raise IntegrationError(
-                f"{self.word}: the motion stays in this section, as far as digits tell.", _GRAZING
+                f"{self.word}: within the precision, the motion stays in this section.", _GRAZING
             )
         places = Places(g, noise, self._bits, self.word)
         before = self._sign or places.sign(0)

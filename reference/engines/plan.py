@@ -1,4 +1,4 @@
-"""An integrator: its input, `Plan`, its output, `Run`, and its interface, `Engine`.
+"""The interface of an integrator: `Engine`, with its input, `Plan`, and its output, `Run`.
 
 Each folder beside this file that has an `engine.py` declares an engine as `ENGINE`; its `run.py`
 has the functions `run(plan, report, pace)` and `taylor_steps(plan, coefficient_bits)`.
@@ -30,16 +30,14 @@ Report = Callable[[float], None]  # called with the simulated time reached, in s
 # called with the steps taken and the time reached; raises to end a run
 Pace = Callable[[int, float], None]
 
-AT_REST = (
-    "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
-)
+AT_REST = "If xdot is rounding error only, as for a bob at rest, do not look for transits: run.transits = false."
 # longest step times the swing's frequency: a small swing's series reach further, bounds do not
 MOST_TURN = 1.75
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A run to be done.
+    """The specification of a run.
 
     Attributes:
         inputs: the exact inputs of a scene.

@@ -104,7 +104,7 @@ def _reported(steps: Iterator[TaylorStep], report: Report) -> Iterator[TaylorSte
 def run_both(
     first: Plan, second: Plan, steps: int, report: Report | None = None
 ) -> tuple[Run, Run]:
-    """Do two runs, at the same time if the machine has two cores and a second process pays.
+    """Do two runs, in parallel if the machine has two cores and a second process saves time.
 
     Args:
         first: runs in this process.
@@ -146,7 +146,7 @@ def send_run(emit: Emit, plan: Plan) -> None:
 
 
 def reports(emit: Emit) -> Report:
-    """Return a report that sends the simulated time, not too often."""
+    """Return a callback that sends the simulated time, at most every so often."""
     last_report = time.monotonic()
 
     def report(t: float) -> None:
@@ -160,7 +160,7 @@ def reports(emit: Emit) -> Report:
 
 @contextmanager
 def in_background(pays: bool, work: Callable[..., None], *arguments: Any) -> Iterator[Background]:
-    """Do work in the background if that pays and there are two cores, else when it is wanted.
+    """Do work in the background if that saves time and there are two cores, otherwise when its result is needed.
 
     `work(emit, *arguments)` is defined at the top level of a module; it sends simulated times, as
     `reports` does, and then its result.
@@ -174,7 +174,7 @@ def in_background(pays: bool, work: Callable[..., None], *arguments: Any) -> Ite
 
 
 class Background:
-    """Work that is done in another process, or by this one once its result is wanted.
+    """Work done in another process, or in this one when its result is needed.
 
     Attributes:
         reached: simulated time in s that it has reached.
@@ -195,7 +195,7 @@ class Background:
 
     @property
     def finished(self) -> bool:
-        """Whether the result, or an error, is there."""
+        """Whether the result, or an error, is available."""
         return self._result.done()
 
     def result(self, report: Report | None = None) -> Any:

@@ -1,4 +1,4 @@
-"""Transits, passages of a section and highest points of a row, from the zeros found, with guards.
+"""Transits, passages of a section and highest points of a row, from the zeros that were found, with guards.
 
 A root finder such as heyoka's may lose a zero. A single one that is lost shows in the directions,
 which have to alternate from the release to the end. Two close together show in samples of the form:
@@ -195,7 +195,7 @@ class Samples:
     motion: RowMotion
 
     def lost(self, found: FoundZeros) -> bool:
-        """Return whether there may be zeros that were not found."""
+        """Return whether zeros may have been missed."""
         signs = found.signs
         if not (signs[:-1] * signs[1:] < 0).all():
             return True
@@ -207,7 +207,7 @@ class Samples:
         return bool(starts.size)
 
     def finer(self, found: FoundZeros) -> Array:
-        """Return the times of samples, with more of them where the form may dip to zero."""
+        """Return the times of samples, with additional ones where the form may reach zero."""
         starts, ends = self._dips(found)
         between = np.linspace(starts, ends, _FINER + 1)[1:-1]
         return np.union1d(self.times, between)

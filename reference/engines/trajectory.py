@@ -1,4 +1,4 @@
-"""Trajectories as binary64 from a single run that nothing confirms.
+"""Trajectories as binary64 from a single, unconfirmed run.
 
 They are those of the model, or of any autonomous system.
 
@@ -15,7 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BeyondDoublesError, InputError, IntegrationError, check_whole, unknown
+from ..errors import (
+    BeyondDoublesError,
+    Described,
+    InputError,
+    IntegrationError,
+    check_whole,
+    counted,
+    unknown,
+)
 from ..model.carried import carried
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
@@ -71,7 +79,8 @@ class Variants:
         if inputs.position is not None:
             x, y, *_ = inputs.position
             if x**2 + y**2 >= inputs.length**2:
-                raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
+                got = Described("a point out of the cord's reach")
+                raise InputError("release", got, "x² + y² less than length²")
         start = Start.of(inputs, DOUBLE.prec + GUARD_BITS)
         k = start.k if alter is None else alter(start.k)
         release = [float(value) for value in (*start.n, *start.v)]
@@ -137,7 +146,7 @@ def integrate(
         times: increasing, from 0, in s.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
-        max_steps: most steps; 0 for any number.
+        max_steps: largest number of steps; 0 for no limit.
 
     Returns:
         The states as binary64, shape (times, variables).
@@ -157,13 +166,14 @@ def integrate(
         raise InputError("derivatives", derivatives, "a function derivatives(state, functions)")
     names = list(variables) if isinstance(variables, Iterable) else []
     if not names or not all(isinstance(name, str) for name in names) or len({*names}) < len(names):
-        raise InputError("variables", variables, "a name for each variable, no two alike")
+        raise InputError("variables", variables, "a different name for each variable")
     system = AutonomousSystem(names, derivatives)
     propagator = Propagator(system, number, tolerance=tolerance)
     numbers = propagator.numbers
-    state = _numbers("start", start, numbers, f"{len(names)} finite numbers, one a variable")
+    expected = f"{counted(len(names), 'finite number')}, one for each variable"
+    state = _numbers("start", start, numbers, expected)
     if len(state) != len(names):
-        raise InputError("start", start, f"{len(names)} numbers, one a variable")
+        raise InputError("start", start, f"{counted(len(names), 'number')}, one for each variable")
     states = propagator.from_zero(state, _from_zero(times, numbers), max_steps=max_steps)
     return np.asarray(states.astype(float))
 
@@ -186,8 +196,8 @@ def trajectory(
         formulation: a name of `model.formulations.FORMULATIONS`.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
-        alter: changes the model's constants, to see the motion that a program with another model
-            would compute.
+        alter: function that changes the model's constants, to get the motion that a program with
+            another model would compute.
 
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
@@ -195,7 +205,8 @@ def trajectory(
     Raises:
         InputError: a wrong scene, formulation or tolerance; times that do not increase from 0.
         UnreachableError: a number of the scene is too large.
-        IntegrationError: heyoka stops before the last time, as where the formulation is singular.
+        IntegrationError: heyoka stops before the last time, for example where the formulation is
+            singular.
     """
     scene = as_scene(scene)
     if formulation not in FORMULATIONS:
@@ -225,7 +236,7 @@ def trajectory(
         advice = ""
         if formulation in _SINGULAR:
             where = _SINGULAR[formulation]
-            advice = f"The formulation {formulation} is singular {where}: take momentum."
+            advice = f"The formulation {formulation} is singular {where}: use momentum."
         raise IntegrationError(error.reason, advice) from None
     rows = model.doubles(states)
     # a formulation rounds the release
@@ -242,7 +253,7 @@ def _check_number(number: object) -> None:
 
 def _from_zero(times: Sequence[Any] | Array, numbers: Any) -> Any:
     """Return times as heyoka's numbers of a run's type."""
-    expected = "numbers of seconds that increase, the first of them 0"
+    expected = "increasing times in s, the first of them 0"
     moments = _numbers("times", times, numbers, expected)
     line = np.array(moments, dtype=numbers.dtype)
     starts_at_zero = line.ndim == 1 and line.size and line[0] == 0

@@ -82,7 +82,7 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
     """
     if is_zero(k.pull[1]) and is_zero(k.centrifugal[2]):
         if is_zero(k.pull[2]) and is_zero(k.centrifugal[3]):
-            raise ValueError("no force acts at the pivot: no rest position is singled out")
+            raise ValueError("no force acts at the pivot, so there is no single rest position")
         return (0, 0, ctx.mpf(-1))
 
     def tangential(theta: Any) -> Any:
@@ -92,5 +92,5 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
 
     theta = ctx.findroot(tangential, ctx.atan2(k.pull[1], -k.pull[2]))
     if ctx.diff(tangential, theta) > 0:
-        raise ValueError("so fast a rotation singles out no rest position")
+        raise ValueError("the rotation is too fast for a single rest position")
     return (0, ctx.sin(theta), -ctx.cos(theta))

@@ -137,7 +137,7 @@ class Plane:
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
         """Return the state of a bob below the suspension."""
         if not n[2] < 0:
-            raise ValueError("The plane formulation holds below the suspension only")
+            raise ValueError("The formulation plane is valid only below the suspension")
         return (n[0], n[1], v[0], v[1])
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
@@ -181,7 +181,7 @@ class Angles:
         """Return the state of a bob off the vertical; `functions` needs atan2 and sqrt."""
         square = n[0] * n[0] + n[1] * n[1]
         if not square > 0:
-            raise ValueError("The angles formulation has no azimuth on the vertical")
+            raise ValueError("The formulation angles has no azimuth on the vertical")
         aside = functions.sqrt(square)
         return (
             functions.atan2(aside, -n[2]),

@@ -79,7 +79,7 @@ class Start:
             return rest_position(self.k, self.ctx)
         except (ValueError, ZeroDivisionError):
             raise UnreachableError(
-                "no rest position is singled out that the bob could swing about."
+                "there is no single rest position for the bob to swing about."
             ) from None
 
     @cached_property

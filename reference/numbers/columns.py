@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InputError, no_attribute
+from ..errors import InputError, NotInstalledError, no_attribute
 from .precision import Array
 
 POSITION = ("x", "y", "z")
@@ -39,7 +39,7 @@ def place_of(name: str, columns: tuple[str, ...]) -> int:
         KeyError: there is no column of that name; it says which there are.
     """
     if name not in columns:
-        raise KeyError(f"{name!r} is no column; there are {', '.join(columns)}")
+        raise KeyError(f"there is no column {name!r}; the columns are {', '.join(columns)}")
     return columns.index(name)
 
 
@@ -52,8 +52,7 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
     try:
         from pandas import DataFrame
     except ImportError:
-        advice = "Install it: pip install pandas."
-        raise InputError("to_pandas", "nothing", "the package pandas", advice) from None
+        raise NotInstalledError("to_pandas", "a DataFrame", "pandas", "pandas") from None
     return DataFrame(columns)
 
 

@@ -23,8 +23,7 @@ class States:
     `t` (s), `x`, `y`, `z` (m), `vx`, `vy`, `vz` (m/s) have the shape of the times asked for.
 
     Attributes:
-        bound: how far any of the numbers of a component may be from the truth, by its name, in m or
-            m/s.
+        bound: bound on the error of all numbers of a component, by its name, in m or m/s.
     """
 
     t: Array
@@ -58,9 +57,9 @@ class GoldenFunction:
         times: ends of the pieces in s, increasing from 0, shape (pieces + 1,).
         coefficients: shape (degree + 1, components, pieces); the components are x, y, and z where
             it has a series.
-        square: square of the length in m², from which z follows where it has no series.
-        bound: how far any value of a component is from the truth, rounding included, by its name,
-            in m or m/s.
+        square: square of the length in m², from which z follows if it has no series.
+        bound: proven bound on the error of any value of a component, rounding included, by its
+            name, in m or m/s.
     """
 
     times: Array

@@ -62,7 +62,7 @@ def double_below(q: Fraction) -> float:
 
 @lru_cache(maxsize=64)
 def context(prec: int) -> Any:
-    """Return the mpmath context of `prec` bits, which nobody may change; making one takes 3 ms."""
+    """Return the shared mpmath context of `prec` bits, which must not be changed; creating one takes 3 ms."""
     ctx = mpmath.mp.clone()
     ctx.prec = prec
     return ctx

@@ -67,7 +67,7 @@ class WithZeros(Generic[T]):
 
     @property
     def directions(self) -> list[int]:
-        """+1 where xdot goes from - to +, per transit."""
+        """For each transit, +1 if xdot goes from - to +, and -1 otherwise."""
         return self._of_xdot.directions
 
     @property

@@ -47,10 +47,10 @@ def _section_words(value: Any) -> Any:
 def _checked_sections(words: tuple[str, ...]) -> tuple[str, ...]:
     for word in words:
         if not re.fullmatch(SECTION_WORD, word, re.ASCII) or abs(azimuth_of(word)) > 360:
-            advice = f"{word!r} is none; an azimuth is a decimal from -360 to 360 degrees, east to north."
+            advice = f"{word!r} is not one of them; an azimuth is a decimal from -360 to 360 degrees, east to north."
             raise Refused(_SECTION_WORDS, advice)
     if len(set(words)) < len(words):
-        raise Refused("each section once", "Leave out the second one.")
+        raise Refused("different sections", "Leave out the repeated one.")
     return words
 
 

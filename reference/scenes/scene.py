@@ -18,7 +18,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import TypeAdapter, ValidationError
 
-from ..errors import InputError, all_of, unknown
+from ..errors import NOTHING, Described, InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
 from .inputs import RELEASES, SITE, Inputs, as_read
@@ -130,7 +130,7 @@ def _word(key: str, value: Any) -> str:
         return str(value)
     items = list(value)
     if any(map(_is_listed, items)):
-        raise InputError(full_name(key), value, "numbers or words, not lists in a list")
+        raise InputError(full_name(key), value, "a list of numbers or words")
     return ",".join(map(str, items))
 
 
@@ -160,10 +160,14 @@ def _with_values(document: dict[str, Any], values: Words) -> Scene:
         key, sign, value = assignment.partition("=")
         section, _, name = full_name(key).rpartition(".")
         if not sign or not name or "." in section:
-            raise InputError("--set", assignment, "section.key=value, such as site.latitude=0")
+            raise InputError("--set", assignment, "SECTION.KEY=VALUE, such as site.latitude=0")
         table = document.setdefault(section, {}) if section else document
         if not isinstance(table, dict):
-            raise InputError("--set", assignment, f"a section, and {section} is a single field")
+            raise InputError(
+                "--set",
+                assignment,
+                f"the name of a section before the point; {section} is a single field",
+            )
         flags = (section, name) == ("", "flags")
         table[name] = [flag for flag in value.split(",") if flag] if flags else value.strip()
     return parse_scene(document)
@@ -259,21 +263,22 @@ def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     fields = set(release.model_dump(exclude_none=True))
     kinds = [names for names in RELEASES.values() if fields & {*names}]
     if not kinds:
-        yield InputError("release", "nothing", "x and y, or angle and azimuth")
+        yield InputError("release", NOTHING, "x and y, or angle and azimuth")
         return
     if len(kinds) > 1:
-        expected = "either x, y (vx, vy) or angle, azimuth (and rates)"
-        yield InputError("release", ", ".join(sorted(fields)), expected, "Keep one kind.")
+        got = Described(f"both {', '.join(sorted(fields))}")
+        expected = "either x, y (and vx, vy) or angle, azimuth (and their rates)"
+        yield InputError("release", got, expected, "Keep one kind.")
         return
     needed = kinds[0][:2]
     missing = [name for name in needed if name not in fields]
     for name in missing:
         yield InputError(
-            f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}."
+            f"release.{name}", NOTHING, "a value", f"Give both {' and '.join(needed)}."
         )
     position, length = exact.position, exact.length
     if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
-        got = f"x = {release.x}, y = {release.y}"
+        got = Described(f"x = {release.x}, y = {release.y}")
         expected = (
             f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²"
         )
@@ -281,7 +286,7 @@ def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:
             "release",
             got,
             expected,
-            "For a release at or above the horizontal give angle and azimuth.",
+            "To release at or above the horizontal, give angle and azimuth.",
         )
 
 
@@ -289,7 +294,9 @@ def _wrong_in_run(scene: Scene, exact: Inputs) -> Iterator[InputError]:
     run = scene.run
     if exact.t_end < _LEAST_T_END:
         yield InputError(
-            "run.t_end", run.t_end, f"at least {float(_LEAST_T_END):g} s, which doubles can divide"
+            "run.t_end",
+            run.t_end,
+            f"at least {float(_LEAST_T_END):g} s, so that doubles can divide it",
         )
     elif exact.t_end / exact.grid_step > MAX_ROWS:
         expected = f"at most {MAX_ROWS} grid times up to t_end"
@@ -322,7 +329,7 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
     file_id = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document:
         if not is_scene_id(file_id):
-            expected = "an id in the file, or a file's name of letters and digits that can be one"
+            expected = "an id in the file, or a file name of letters and digits"
             raise InputError("id", path.name, expected, 'Add a line such as id = "mine" to it.')
         document["id"] = file_id
     return _with_values(document, values)

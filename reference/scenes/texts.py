@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails
 
-from ..errors import InputError, did_you_mean
+from ..errors import NOTHING, InputError, did_you_mean
 from ..plain_text import is_plain
 from .inputs import as_read
 
@@ -66,12 +66,15 @@ def _decimal(text: str, info: ValidationInfo) -> str:
         raise Refused("a decimal number such as 67 or 7.292115e-5", _how_to_write(text))
     # zero as well: 0e999999999 is computed with a power of ten
     if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > _MAX_EXPONENT:
-        raise Refused(f"a number between 1e-{_MAX_EXPONENT} and 1e{_MAX_EXPONENT} in size")
+        raise Refused(
+            f"a number of absolute value between 1e-{_MAX_EXPONENT} and 1e{_MAX_EXPONENT}"
+        )
     try:
         as_read(text, _reading(info))
     except OverflowError:
         raise Refused(
-            f"a number that a double holds, at most {sys.float_info.max:.3g} in size", _DOUBLES
+            f"a number in the range of a double, of absolute value at most {sys.float_info.max:.3g}",
+            _DOUBLES,
         ) from None
     return text
 
@@ -191,9 +194,9 @@ def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
         advice = did_you_mean(field, known, "`foucault show SCENE` lists them.")
         return InputError(field, got, "a field that scenes have", advice)
     if kind == "missing" and field == "release":
-        return InputError(field, "nothing", "a table with x and y, or with angle and azimuth")
+        return InputError(field, NOTHING, "a table with x and y, or with angle and azimuth")
     if kind == "missing":
-        return InputError(field, "nothing", "a value", "Add this field to the scene.")
+        return InputError(field, NOTHING, "a value", "Add this field to the scene.")
     expected = {
         "literal": "one of " + str(details.get("ctx", {}).get("expected", "")),
         "int": "a whole number",

@@ -105,7 +105,7 @@ def _check_independent(states: Table, differences: Mapping[str, Fraction]) -> No
     changing = [name for name, column in columns if len(set(column)) > 1]
     if changing and not any(differences[name] for name in changing):
         raise IntegrationError(
-            "The two runs are the same run: they differ nowhere, so their agreement proves nothing."
+            "Both runs gave the same numbers throughout, so their agreement proves nothing."
         )
 
 

@@ -184,7 +184,7 @@ def confirmed(task: ProofTask, solution: Solution, confirm: Confirmation, witnes
         plan = _confirming_plan(task, confirm, prec)
         witness = run(plan) if confirm == "whole" else _sampled(plan, solution)
     raise IntegrationError(
-        f"heyoka does not confirm the proof: it is {float(check.position_m):.2g} m away."
+        f"heyoka does not confirm the proof: its positions differ by {float(check.position_m):.2g} m."
     )
 
 

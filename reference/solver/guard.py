@@ -51,7 +51,7 @@ def guarded(solution: Solution, pilot: Pilot, report: Report | None = None) -> S
     for prec in _precisions(solution, pilot):
         if prec > _MOST_CHECK_PREC:
             reason: Exception = UnreachableError(
-                f"A run would take {prec} bits to see transits so flat."
+                f"To find transits so close to a touch, a run would need {prec} bits."
             )
             break
         try:
@@ -91,7 +91,7 @@ def _check(event_run: Run, solution: Solution, pilot: Pilot) -> CrossCheck:
     for name, places in pilot.decimals(_USUAL_DIGITS).items():
         if gaps[name] > Fraction(1, 10**places):
             raise IntegrationError(
-                f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure."
+                f"heyoka's states differ from the enclosure by {float(max(gaps.values())):.1e}."
             )
     zero_gaps = _zero_gaps(event_run, solution, _between_rows(gaps))
     return CrossCheck.by(event_run, gaps, zero_gaps.get(XDOT))
@@ -157,7 +157,7 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
     name = "transit" if word == XDOT else f"{word} passage"
     if len(found.table) != len(zeros.directions) and not zeros.possible:
         raise IntegrationError(
-            f"heyoka finds {len(found.table)} {name}s, the enclosure {len(zeros.directions)}."
+            f"heyoka finds {len(found.table)} {name}s, but the proof finds {len(zeros.directions)}."
         )
     bits = max(zeros.table.bits, found.table.bits)
     rounding = zeros.table.largest()["t"] * Fraction(2) ** (EVALUATION_BITS - prec)
@@ -172,7 +172,7 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
         gap = _gap_of_the_next(candidates, t, bound, direction)
         if gap is None:
             raise IntegrationError(
-                f"heyoka does not find {name} {k} of the enclosure, at t = {t / 2**bits} s."
+                f"heyoka does not find {name} {k} of the proof, at t = {t / 2**bits} s."
             )
         largest = max(largest, gap)
     return Fraction(largest, 2**bits)

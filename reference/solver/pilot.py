@@ -176,8 +176,8 @@ def run_pilot(
         prec = max(2 * LONG_DOUBLE.prec, 2 * pair.prec, extrapolated)
         pair = _PilotPair(inputs, times, engine, prec, prec + _LATER_GAP_BITS)
     raise UnreachableError(
-        f"Rounding grows so fast that runs keep no digit beyond t = {float(good_until):.3g} s; "
-        f"to the end it takes about {pair.prec} bits, which is out of reach.",
+        f"Rounding errors grow so fast that no digit is left after t = {float(good_until):.3g} s; "
+        f"a run to the end would need about {pair.prec} bits, which is out of reach.",
         "Ask for a shorter run: run.t_end.",
     )
 
@@ -386,7 +386,7 @@ def check_reach(steps: int, prec: int, digits: int, advice: str = "") -> None:
     """
     if out_of_reach(steps, prec):
         raise UnreachableError(
-            f"{digits} digits take {prec} bits over about {steps} steps, which is out of reach.",
+            f"{digits} digits would need {prec} bits and about {steps} steps, which is out of reach.",
             advice or "Ask for fewer digits (run.digits) or a shorter run (run.t_end).",
         )
 

@@ -106,7 +106,9 @@ class Feed:
         for _ in self._steps:
             pass
         if self._run is None:
-            raise IntegrationError("the approximant ended without its states.")
+            raise IntegrationError(
+                "the run of the approximant ended before it returned its states."
+            )
         return self._run
 
     def stop(self) -> None:

@@ -120,10 +120,10 @@ def _decided(task: ProofTask, enclose: Any, feed: Feed, report: Report | None) -
             check_decided(solution)
             return solution
         except UndecidedRounding as undecided:
-            reason = f"{undecided} Balls of {rounded_up(radius)} m were tried."
+            reason = f"{undecided} The proof went down to error bounds of {rounded_up(radius)} m."
             if undecided.width < _TIE:
                 advice = (
-                    "The value is a rounding tie at this precision: "
+                    "The value lies halfway between two numbers of this many digits: "
                     f"ask for one digit more, {scene.run.digits + 1}."
                 )
                 raise UnreachableError(reason, advice) from None

@@ -88,9 +88,9 @@ class Ranges(WithZeros[Intervals]):
         grid: position and velocity at those times, in m and m/s.
         zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections;
             without xdot where that is identically zero.
-        engine: whose steps were proved.
+        engine: the engine whose steps were proved.
         proof: the `BoxEnclosure`; None for ranges that were read from a file.
-        derivatives: whether derivatives were asked for. They may make every interval narrower.
+        derivatives: whether derivatives were requested. They may make every interval narrower.
     """
 
     scene: Scene
@@ -228,8 +228,8 @@ class Ranges(WithZeros[Intervals]):
         name = full_name(name)
         derivatives = self._derivatives
         if derivatives is None:
-            expected = "ranges that were solved with derivatives"
-            advice = "Write reference.prove_ranges(…, derivatives=True)."
+            expected = "ranges that were proved with derivatives"
+            advice = "Call reference.prove_ranges(…, derivatives=True)."
             raise InputError("derivative", name, expected, advice)
         names = derivatives.names
         if name not in names:

@@ -67,7 +67,7 @@ class ProofOptions:
     function: bool = False
 
     def check(self, level: str) -> None:
-        """Refuse options that the level does not have.
+        """Refuse options that need another level.
 
         Raises:
             InputError: an unknown confirmation, or another level than enclosed, which alone has a
@@ -84,7 +84,7 @@ class ProofOptions:
         }
         for name, value in wanted.items():
             if value:
-                advice = "Nothing else has the proof that it takes."
+                advice = "Only level enclosed has the proof that this needs."
                 raise InputError(name, level, "the level enclosed", advice)
 
 
@@ -129,7 +129,7 @@ class RangesRequest:
 
 
 def progress_report(report: Report | None, span_s: Fraction) -> Report | None:
-    """Return a function of the part of a span that is done, which reports the simulated time."""
+    """Return a callback that takes the completed share of a span and reports the simulated time."""
     if report is None:
         return None
     return lambda part: report(part * float(span_s))

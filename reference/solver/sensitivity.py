@@ -43,7 +43,7 @@ _CONSTANTS = ("turn_1", "turn_2", "pull_1", "pull_2", "drag")
 
 
 def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool = True) -> float:
-    """Return how many decimal digits are lost between inputs and results.
+    """Return how many decimal digits error amplification costs between inputs and results.
 
     For n digits of every result the inputs need n + this many.
 
@@ -80,7 +80,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], *, constants: bool 
             return _digits_lost_by(worst / nudge)
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(
-        f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be "
+        f"Even at {MAX_PREC} bits, perturbed runs diverge completely, so the sensitivity cannot be "
         "measured.",
         "Ask for a shorter run: run.t_end.",
     )
@@ -132,7 +132,7 @@ class Sensitivity:
         return self._along(self._slope(name))
 
     def relative(self, *, release: bool) -> Array:
-        """Return the response to one relative change of all numbers of the release, or of all constants.
+        """Return the response to a common relative change of all numbers of the release, or of all constants.
 
         Shape (times, 6), in m and m/s. The signs of the changes add up their effects; a latitude
         where a term vanishes is exact, as in `digits_lost`.
@@ -145,7 +145,7 @@ class Sensitivity:
         return self._sum(slopes)
 
     def rounding(self) -> Array:
-        """Return how far rounding all inputs to binary64 moves the trajectory, shape (times, 6)."""
+        """Estimate how far rounding all inputs to binary64 moves the trajectory, in m and m/s, shape (times, 6)."""
         slopes = []
         for name, value in self.scene.exact.by_name.items():
             change = Fraction(float(value)) - value

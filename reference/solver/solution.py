@@ -1,4 +1,4 @@
-"""A solved scene: tables of numbers with bounds, their decimals, and the runs or proof behind them.
+"""A solved scene: tables of numbers with error bounds, their decimals, and the runs or the proof that support them.
 
 The decimals follow from the bounds, and so does whether a proof decides each digit; `Table` rounds.
 """
@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import numpy.typing as npt
 
 from ..engines.plan import Run
-from ..errors import InputError, UnreachableError, counted
+from ..errors import Described, InputError, UnreachableError, counted
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.function import GoldenFunction, States
 from ..numbers.table import Table, UndecidedNumber, decimals_of, resolved
@@ -110,19 +110,20 @@ class Solution(GridColumns, WithZeros[Table]):
         grid: `columns.GRID` at those times, in SI units.
         zeros: the zeros that the scene asks for, by word: "xdot" for transits, and its sections;
             without xdot where that is identically zero.
-        run: the run that the numbers come from.
+        run: the run that computed the numbers.
         checks: runs that agree with it.
-        pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
+        pilot_s: CPU seconds of the pilot runs, from which the precision was chosen.
         proof: the enclosure, at the level enclosed.
-        guard: at the level enclosed, where no run confirms every transit, one with event detection
-            that found them all, in the cheapest type that serves; it goes into no dataset.
+        guard: at the level enclosed, if no run confirms every transit: a run with event detection
+            that found them all, in the cheapest sufficient type; no dataset mentions it.
         discarded_s: CPU seconds of runs and proofs in too few bits, whose numbers are not used.
-        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rest
-            on it, and a run that finds other transits is an error.
+        not_checked: why there is neither a whole confirmation nor a guard. The proof does not rely
+            on them; a run that finds other transits is an error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,),
-    `solution.exact("x")` are fractions; both tables have `table["x"]`, `table.exact("x")`, the
-    same, and `table.bound("x")`. With a golden function `solution.at(t)` is the motion at any time.
+    `solution.exact("x")` are fractions. Both tables have `table["x"]`, `table.exact("x")` and
+    `table.bound("x")`, bounds on the errors, proven at the level enclosed and otherwise estimated.
+    With a golden function `solution.at(t)` is the motion at any time.
     """
 
     scene: Scene
@@ -155,7 +156,7 @@ class Solution(GridColumns, WithZeros[Table]):
 
     @property
     def cpu_s(self) -> float:
-        """CPU seconds of all runs and proofs, imports and compilation apart."""
+        """CPU seconds of all runs and proofs, without imports and compilation."""
         return self.pilot_s + self.run.cpu_s + self.check_s + self.discarded_s
 
     @property
@@ -197,7 +198,8 @@ class Solution(GridColumns, WithZeros[Table]):
         """
         if self.function is None:
             advice = "Solve it with level='enclosed', function=True, or write it and load it."
-            raise InputError("at", "a solution without a golden function", "one with it", advice)
+            got = Described("a solution without a golden function")
+            raise InputError("at", got, "a solution with a golden function", advice)
         return self.function.at(t)
 
     def __repr__(self) -> str:
@@ -209,7 +211,7 @@ class Solution(GridColumns, WithZeros[Table]):
 
 
 def grid_decimals(solution: Solution) -> dict[str, int]:
-    """Return the digits after the point of each column of the grid.
+    """Return the number of decimals of each column of the grid.
 
     Its largest number gets the significant digits asked for.
     """
@@ -218,7 +220,7 @@ def grid_decimals(solution: Solution) -> dict[str, int]:
 
 
 def decimals_of_zeros(solution: Solution, word: str) -> dict[str, int]:
-    """Return the digits after the point of each column of a word's zeros; empty without zeros."""
+    """Return the number of decimals of each column of a section's zeros; empty if there are no zeros."""
     if word not in solution.zeros:
         return {}
     tables = {other: zeros.table for other, zeros in solution.zeros.items()}
@@ -226,7 +228,7 @@ def decimals_of_zeros(solution: Solution, word: str) -> dict[str, int]:
 
 
 def exact_decimals(values: tuple[Fraction, ...]) -> int:
-    """Return the digits after the point that print terminating decimals exactly."""
+    """Return the number of decimals with which terminating decimals are printed exactly."""
     digits = 0
     for value in values:
         while (value * 10**digits).denominator != 1:
@@ -245,7 +247,7 @@ def _tables_of(solution: Solution) -> list[tuple[Table, dict[str, int]]]:
 def separated(
     zeros: Sequence[Any], word: str, end: Fraction, table: Callable[[tuple[str, ...], Any], T]
 ) -> Zeros[T]:
-    """Return what a proof found up to `end`: single zeros, as a table, and undecided ones.
+    """Return the zeros that a proof found up to `end`: single ones as a table, and undecided ones.
 
     Zeros lie in (0, end], to which the ball of an undecided cluster is cut.
     """
@@ -275,7 +277,7 @@ def check_decided(solution: Solution) -> None:
 
 
 class UndecidedRounding(UnreachableError):
-    """A proven interval holds a number halfway between two decimals: a finer enclosure is needed.
+    """A proven interval contains a number halfway between two decimals: a finer enclosure is needed.
 
     Attributes:
         width: half-width of the widest such interval, in units of the last printed digit.

@@ -67,19 +67,19 @@ def solve(
         sections: other moments to find, such as ["highest", "gate 30"]: docs/scene.md has the
             words.
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that
-            is installed. At the level confirmed the run that confirms is always heyoka's.
+            is installed. At the level confirmed the confirming run is always heyoka's.
         audit: at the level enclosed, check all that compiled code returns for the proof, step by
             step, so that FLINT alone proves the same digits.
-        confirm: at the level enclosed, what heyoka confirms as well, in another formulation:
-            "whole", every digit and transit, on a second core; "sampled", the end of a tenth of the
-            grid's intervals, each from its first row; or "none".
+        confirm: at the level enclosed, what heyoka confirms in another formulation:
+            "whole", every digit and transit, on a second core; "sampled", a tenth of the grid's
+            intervals, each integrated from its first row; or "none".
         function: at the level enclosed, make the golden function as well: the motion at any time,
             `Solution.at`.
         report: called with the simulated time reached, in s.
 
     Returns:
-        A `Solution`: binary64 arrays, exact values, and a bound on every number. Where inputs are
-        known to intervals only, `prove_ranges` returns intervals.
+        A `Solution`: binary64 arrays, exact values, and a bound on every number. For inputs that are
+        known only as intervals, use `prove_ranges`.
 
     Raises:
         InputError: a field of the scene is wrong.
@@ -116,7 +116,7 @@ def _solved(request: SolveRequest) -> Solution:
 
 
 def solve_at(scene: Scene, times: Collection[Fraction], digits: int) -> Solution:
-    """Solve a scene without transits, at times in s in place of its grid, at self_consistent."""
+    """Solve a scene at given times in s instead of its grid times, at level self_consistent, without transits."""
     settings = [f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"]
     scene = scene.with_values(settings)
     moments = {Fraction(0), *times}
@@ -216,9 +216,7 @@ def _agreed(request: SolveRequest, pilot: Pilot) -> Solution:
             # limbs hold no more bits of a swing much smaller than the cord
             last_resort = fastest(MAX_PREC).name
             if published.plan.engine == last_resort:
-                raise UnreachableError(
-                    "Two runs disagree, and a higher precision does not bring them together."
-                )
+                raise UnreachableError("Two runs disagree, even at a higher precision.")
             request = replace(request, engine=last_resort)
         last_gap = largest_gap
 
@@ -227,9 +225,9 @@ def _agreed(request: SolveRequest, pilot: Pilot) -> Solution:
             break
         prec = next_prec
     raise UnreachableError(
-        f"Two runs up to {prec} bits do not agree to {digits} digits.",
+        f"Two runs of up to {prec} bits do not agree to {digits} digits.",
         "Ask for fewer digits or a shorter run; "
-        "a transit that only grazes xdot = 0 cannot be decided this way.",
+        "two runs cannot decide whether xdot touches zero or crosses it.",
     )
 
 

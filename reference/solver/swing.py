@@ -25,21 +25,19 @@ _CERTAIN = 1e-6
 _CLEAR = 16
 HOUR = 3600
 # Why there is no swing, no precession or no full turn
-NO_SWING = "it has no two highest points: the bob does not swing to and fro, or the run ends before"
+NO_SWING = "it has fewer than two highest points: the bob does not swing to and fro, or the run is too short"
 LEAN = (
     f"its last swing is less than {_CLEAR} times as wide as the rest position is off the plumb line"
 )
-NO_SECTION = "the section highest was not asked for, from which the swing follows"
+NO_SECTION = "it needs the section highest, which the scene does not ask for"
 UNDECIDED = "it is not decided which of its points are the highest"
-ONE_SIDE = (
-    "highest points that follow one another lie on one side: they are not the ends of a swing"
-)
+ONE_SIDE = "successive highest points lie on the same side: they are not the ends of a swing"
 FAST = (
     "the site may turn by a right angle or more from one highest point to the next: "
-    "nobody can tell which way"
+    "the direction cannot be determined"
 )
 SMALL = "the plane turns by less than it may seem to, since the rest position is off the plumb line"
-_LOST = "the plane may turn so far from one highest point to the next that nobody can follow it"
+_LOST = "the plane may turn too far from one highest point to the next to be followed"
 _ARC = Fraction(21, 20)  # a little more than π/3
 _DEGREES = Fraction(573, 10)  # a little more than a radian in degrees
 
@@ -100,7 +98,7 @@ class Swing:
         return Ends(low, high)
 
     def near(self, other: Swing | None, far: Fraction) -> Swing:
-        """Return this swing, its precession cut to what is at most `far` from another's."""
+        """Return this swing with its precession cut to the values that differ from another's by at most `far`."""
         if self.precession is None or other is None or other.precession is None:
             return self
         low = max(self.precession.low, other.precession.low - far)
@@ -179,7 +177,7 @@ def _longest_gap(points: Sequence[_Point]) -> Fraction:
 
 
 def left_out(reason: str, still: bool) -> dict[str, str]:
-    """Return why a swing has no precession or no full turn, by their names in a document.
+    """Return the reasons why a swing has no precession or no full turn, by their names in a document.
 
     Args:
         reason: why there is no precession, "" if there is one.
@@ -191,7 +189,7 @@ def left_out(reason: str, still: bool) -> dict[str, str]:
 
 
 def offset(start: Start, far: Any) -> float:
-    """Return how far a swing's highest points may lie from its ends, in radians of azimuth.
+    """Return a bound on the distance of a swing's highest points from its ends, in radians of azimuth.
 
     Above 1 they may lie anywhere.
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..engines.plan import Report
 from ..engines.registry import checked
-from ..errors import InputError, unknown
+from ..errors import NOTHING, Described, InputError, unknown
 from ..numbers.columns import STATE
 from ..numbers.precision import fixed_decimal
 from ..numbers.taylor_step import TaylorStep
@@ -48,7 +48,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         raise InputError("widths", uncertain, "a mapping such as {'pendulum.length': '±0.001'}")
     if not uncertain:
         example = "an input with its width, length=±0.001"
-        raise InputError("--uncertain", "nothing", example, _INPUT_NAMES)
+        raise InputError("--uncertain", NOTHING, example, _INPUT_NAMES)
 
     widths: dict[str, Fraction] = {}
     for word, text in uncertain.items():
@@ -56,7 +56,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         field = f"uncertain.{word}" if scene.uncertain.get(word) == text else f"--uncertain {word}"
         _check_input(scene, name, field, word, text)
         if name in widths:
-            raise InputError(field, text, f"{name} once", "Give one width for each input.")
+            raise InputError(field, text, f"one width of {name}", "Give one width for each input.")
         widths[name] = _width(field, text)
     _check_ends(scene, widths)
     if scene.exact.position:
@@ -83,7 +83,7 @@ def _width(field: str, text: Any) -> Fraction:
     except InputError:
         raise InputError(field, text, _EXAMPLE) from None
     if width <= 0:
-        raise InputError(field, text, "a width above 0", "Leave out an input that is certain.")
+        raise InputError(field, text, "a width above 0", "Leave out inputs that are exact.")
     return width
 
 
@@ -95,7 +95,7 @@ def _check_ends(scene: Scene, widths: Mapping[str, Fraction]) -> None:
             try:
                 checked_value(name, decimal(end), "decimal")
             except InputError as error:
-                reached = f"±{decimal(half)}, up to {decimal(end)}"
+                reached = Described(f"±{decimal(half)}, up to {decimal(end)}")
                 advice = "Take a smaller width."
                 raise InputError(f"--uncertain {name}", reached, error.expected, advice) from None
 
@@ -106,20 +106,20 @@ def _check_release(scene: Scene, widths: Mapping[str, Fraction]) -> None:
     shortest = inputs["pendulum.length"] - widths.get("pendulum.length", 0)
     x, y = (abs(inputs[name]) + widths.get(name, 0) for name in ("release.x", "release.y"))
     if x**2 + y**2 >= shortest**2:
-        reached = f"x up to {decimal(x)}, y up to {decimal(y)}"
+        reached = Described(f"x up to {decimal(x)}, y up to {decimal(y)}")
         expected = "a release below the suspension"
         raise InputError("--uncertain", reached, expected, "Take smaller widths.")
 
 
 def decimal(value: Fraction) -> str:
-    """Return a number with its decimals, 20 at most."""
+    """Return a number as a decimal with at most 20 digits after the point."""
     terminates = (value * 10**_MOST_DECIMALS).denominator == 1
     places = exact_decimals((value,)) if terminates else _MOST_DECIMALS
     return fixed_decimal(value, places)
 
 
 def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
-    """Return widths as decimals, with all of their digits."""
+    """Return widths as decimals with all of their digits."""
     return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
 
 
@@ -145,7 +145,7 @@ def prove_ranges(
     derivatives: bool = False,
     report: Report | None = None,
 ) -> Ranges:
-    """Prove intervals that hold for every pendulum whose inputs lie in their ranges.
+    """Prove intervals that are true for every pendulum whose inputs lie in their ranges.
 
     The proof is that of THEOREM.md, sections 11 to 13.
 
@@ -160,14 +160,14 @@ def prove_ranges(
             words.
         engine: "heyoka", "limbs", or None for the fastest that is installed.
         times: in s, from 0 on and increasing, in place of the scene's grid.
-        derivatives: prove derivatives to these inputs too: `Ranges.derivative`. It takes longer,
-            and may make every interval narrower.
+        derivatives: prove derivatives with respect to these inputs too: `Ranges.derivative`. This
+            takes longer, and may make every interval narrower.
         report: called with the simulated time reached, in s.
 
     Raises:
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is
             not installed.
-        UnreachableError: the ranges are too wide; it tells up to which time a proof holds.
+        UnreachableError: the ranges are too wide; it says up to which time the proof reaches.
     """
     need_proof()
     settings = RunSettings(level="enclosed", t_end=t_end, transits=transits, sections=sections)

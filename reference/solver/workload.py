@@ -1,4 +1,4 @@
-"""How much of a solution's work is done: its parts, weighed by their expected CPU seconds."""
+"""How much of a solution's work is done: its parts, weighted by their expected CPU seconds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..system.channel import ACTIVITY
 
 
 class Workload:
-    """Parts of a solution's work, each of which goes through the simulated time once.
+    """Parts of a solution's work; each goes through the simulated time once.
 
     Args:
         report: called with the part of the whole work that is done, as simulated time in s.
@@ -29,7 +29,7 @@ class Workload:
         self._background: dict[str, Background] = {}
 
     def part(self, activity: str) -> Report | None:
-        """Return the report of one part, which this process works on; None if nobody listens."""
+        """Return the progress callback of a part that this process works on; None if progress is not shown."""
         if self._report is None:
             return None
 
@@ -41,7 +41,7 @@ class Workload:
         return report
 
     def watch(self, activity: str, work: Background) -> None:
-        """Take part of the work from a background, as far as that has come, if it is done at the same time."""
+        """Add the progress of a background process to that of the work, if both run at the same time."""
         if work.at_work:
             self._background[activity] = work
 

@@ -1,4 +1,4 @@
-"""Many scenes at once: `reference.sweep`, in memory or into a folder, on cores or a cluster.
+"""Many scenes at once: `reference.sweep`, in memory or into a folder, on local cores or a cluster.
 
 - `sweep`: the functions, and what they return; `request`: the request of a sweep, checked.
 - `axes`: rows of exact values, from words or files; `row_constants`: what an engine takes.

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError, unknown, usable
+from ..errors import Described, InputError, counted, unknown, usable
 from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
 from ..scenes.scene import Reading, checked_value, field_names, full_name
@@ -65,7 +65,7 @@ class AxisTable:
     def restored(
         cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading
     ) -> AxisTable:
-        """Return the table whose `typed` and `stored` were written down."""
+        """Return the table that was written as `typed` and `stored`."""
         from_file = {key: tuple(texts) for key, texts in stored.items()}
         if typed is None:
             return cls(from_file)
@@ -76,7 +76,7 @@ class AxisTable:
 
     @property
     def stored(self) -> dict[str, tuple[str, ...]]:
-        """The values that do not follow from what was typed: those that come from a file."""
+        """The values that come from a file, and so do not follow from what was typed."""
         return {
             key: texts
             for key, texts in self.values.items()
@@ -99,7 +99,7 @@ class AxisTable:
         return {key: texts[place] for key, texts, (place,) in self._placed([row])}
 
     def numbers(self, rows: Any, reading: Reading) -> dict[str, DoubleDouble]:
-        """Return the numbers of rows by field; only where nothing is wrong with them."""
+        """Return the numerical values of rows by field; the rows must be valid."""
         columns = {}
         for key, texts, places in self._placed(rows):
             if key in WORD_FIELDS:
@@ -112,7 +112,7 @@ class AxisTable:
         return columns
 
     def words(self, rows: Any) -> dict[str, list[str]]:
-        """Return the values of rows by field, those that are words."""
+        """Return the values of rows that are words, by field."""
         return {
             key: [texts[place] for place in places]
             for key, texts, places in self._placed(rows)
@@ -120,7 +120,7 @@ class AxisTable:
         }
 
     def wrong(self, rows: Sequence[int], reading: Reading) -> dict[int, str]:
-        """Return, by row of a list, why its first wrong value is wrong by itself.
+        """Return, by row of a list, what is wrong with its first invalid value.
 
         The values of `--over` words were checked when they were read.
         """
@@ -195,12 +195,12 @@ def combinations(words: Iterable[str], reading: Reading) -> AxisTable:
     for word in words:
         read = axis(word, reading)
         if read.key in values:
-            raise InputError("--over", read.key, "each field once")
+            raise InputError("--over", read.key, "each field at most once")
         values[read.key] = read.values
         typed[read.key] = read.typed
     table = AxisTable(values, typed)
     if table.count > _MAX_ROWS:
-        raise InputError("--over", f"{table.count} rows", f"at most {_MAX_ROWS:,} rows")
+        raise InputError("--over", Described(f"{table.count} rows"), f"at most {_MAX_ROWS:,} rows")
     return table
 
 
@@ -244,7 +244,7 @@ def axis(word: str, reading: Reading) -> Axis:
         checked_value(key, text, reading)
         value = _distinguished(key, text, reading)
         if value in seen:
-            raise InputError("--over", word, "each value once", f"{text} is there already.")
+            raise InputError("--over", word, "each value once", f"{text} is given twice.")
         seen.add(value)
     return Axis(key, typed, values)
 
@@ -267,7 +267,7 @@ def _range(key: str, word: str) -> tuple[str, ...]:
         raise InputError("--over", f"{key}={word}", f"{key}={_FORMS}")
     start, stop, step = (_exactly(key, part) for part in parts)
     if step == 0 or (stop - start) / step < 0:
-        raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
+        raise InputError("--over", f"{key}={word}", "a STEP towards STOP")
     count = (stop - start) // step + 1
     if count > MAX_VALUES:
         raise InputError("--over", f"{key}={word}", f"at most {MAX_VALUES:,} values")
@@ -304,10 +304,12 @@ def rows_of_file(path: Path) -> AxisTable:
     names = [name for name, _ in columns]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("--rows", name, "each field once")
+            raise InputError("--rows", name, "each field in at most one column")
         _check_key("--rows", name)
     if not columns or not columns[0][1]:
-        raise InputError("--rows", str(path), "a line of names of fields, and rows below it")
+        raise InputError(
+            "--rows", str(path), "a header line with names of fields, and rows below it"
+        )
     return AxisTable(dict(columns))
 
 
@@ -327,7 +329,7 @@ def _check_size(names: Iterable[str], rows: int) -> None:
     for key in names:
         _check_key("--rows", key)
     if rows > MAX_VALUES:
-        raise InputError("--rows", f"{rows} rows", f"at most {MAX_VALUES:,}")
+        raise InputError("--rows", Described(f"{rows} rows"), f"at most {MAX_VALUES:,}")
 
 
 def _text(value: Any) -> str:
@@ -351,9 +353,8 @@ def _columns_of_csv(option: str, path: Path) -> list[tuple[str, tuple[str, ...]]
         lines: list[list[str]] = []
         for cells in filter(any, rows):
             if lines and len(cells) != len(lines[0]):
-                got = f"{path}, line {rows.line_num}"
-                expected = f"{len(lines[0])} values as in the first"
-                raise InputError(option, got, expected, f"It has {len(cells)}.")
+                got = Described(f"{counted(len(cells), 'value')} in line {rows.line_num} of {path}")
+                raise InputError(option, got, f"{len(lines[0])}, as in the first line")
             lines.append(cells)
             if len(lines) > MAX_VALUES + 1:
                 break
@@ -382,8 +383,8 @@ def _with_point(option: str, cell: str) -> str:
     """
     number = cell.strip()
     if _GROUPED.fullmatch(number):
-        advice = "Does its comma separate thousands?"
-        raise InputError(option, cell, "a point for the decimal mark", advice)
+        advice = "Does the comma separate thousands?"
+        raise InputError(option, cell, "a point as the decimal mark", advice)
     if _DECIMAL_COMMA.fullmatch(number):
         return cell.replace(",", ".")
     return cell

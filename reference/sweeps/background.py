@@ -18,7 +18,7 @@ _START = (
 
 
 def compile_for_the_next(request: Request) -> str:
-    """Compile in the background what would solve a sweep's rows faster; return what was begun.
+    """Compile in the background an engine that would solve a sweep's rows faster; return what was started.
 
     Returns:
         One sentence for the user; empty if nothing faster can be compiled. The process goes on when

@@ -1,4 +1,4 @@
-"""Clusters through dask.distributed, here or on other machines; the only door to dask.
+"""Clusters through dask.distributed, on this machine or others; the only module that uses dask.
 
 dask sends a part again if its worker is lost. A part that was lost as often as dask allows has
 killed its workers.
@@ -22,7 +22,7 @@ import distributed
 from distributed.scheduler import KilledWorker
 from distributed.versions import get_package_info
 
-from ..errors import FoucaultError, InputError
+from ..errors import Described, FoucaultError, InputError
 from ..system.interruption import held
 from ..system.workers import Pool, WorkerDied
 from ..system.workspace import workspace
@@ -37,11 +37,13 @@ _PACKAGES = ("foucault-reference", "heyoka", "numba", "numpy", "python-flint", "
 _WAIT_S = 10.0  # for an answer of the scheduler
 _FOREVER_S = 1e7
 _RETRIES = 3  # of a part that raised an error
-_LOST = "the scheduler was lost; what is done stays, and the same command goes on."
+_LOST = (
+    "the connection to the scheduler was lost. Finished parts are kept; the same command resumes."
+)
 
 
 class ClusterError(FoucaultError):
-    """The scheduler was lost; what is done stays."""
+    """The connection to the scheduler was lost; finished parts are kept."""
 
     exit_status = 2
 
@@ -81,7 +83,7 @@ class Scheduler:
 
 @contextmanager
 def scheduler_at(address: str) -> Iterator[Scheduler]:
-    """Provide a scheduler whose workers have our versions; end it if it was started here.
+    """Yield a scheduler whose workers have the versions of this process; stop it at the end if it was started here.
 
     Args:
         address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's
@@ -98,7 +100,7 @@ def scheduler_at(address: str) -> Iterator[Scheduler]:
         try:
             client.wait_for_workers(1, timeout=_WAIT_S)
         except TimeoutError:
-            advice = "Start them: `dask worker ADDRESS`."
+            advice = "Start workers with `dask worker ADDRESS`."
             raise InputError("--cluster", address, "a scheduler with workers", advice) from None
         workers = sum(client.nthreads().values())
         versions = client.get_versions(packages=_PACKAGES)
@@ -113,7 +115,7 @@ def _connected(address: str, stack: ExitStack) -> Any:
     if address.startswith(_LOCAL):
         return _started(address, stack)
     if not address.startswith(_SCHEMES):
-        expected = "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N"
+        expected = "tcp://HOST:PORT or tls://HOST:PORT of a dask scheduler, or local:N"
         raise InputError("--cluster", address, expected)
     try:
         return stack.enter_context(distributed.Client(address, timeout=_WAIT_S))
@@ -130,7 +132,7 @@ def _started(address: str, stack: ExitStack) -> Any:
     """Return a client of a scheduler that is started here, with N workers for local:N."""
     count = address.removeprefix(_LOCAL)
     if not count.isdigit() or not int(count):
-        raise InputError("--cluster", address, "local:N with a number of workers from 1")
+        raise InputError("--cluster", address, "local:N, with at least 1 worker")
     # dask waits only some seconds for a worker that is started again after its death, even for the
     # last one
     stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": _FOREVER_S}))
@@ -152,7 +154,7 @@ def _started(address: str, stack: ExitStack) -> Any:
                 scheduler_kwargs={"dashboard_address": ":0"},
             )
         except RuntimeError as error:
-            expected = "processes that dask can start here"
+            expected = "a machine on which dask can start processes"
             raise InputError("--cluster", address, expected, f"{error}") from None
         return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
 
@@ -161,8 +163,8 @@ def _check_versions(there: dict[str, Any], here: dict[str, Any], worker: str) ->
     """Refuse a worker whose packages have other versions than here."""
     for name in _PACKAGES:
         if there[name] != here[name]:
-            got = f"{name} {there[name]} on {worker}"
-            expected = f"{name} {here[name]}, as here"
+            got = Described(f"{name} {there[name]} on {worker}")
+            expected = f"{name} {here[name]}, as on this machine"
             raise InputError("--cluster", got, expected, "Install the same versions everywhere.")
 
 
@@ -186,7 +188,7 @@ def _settle(future: Future[Any], dask_future: Any) -> None:
 
 @contextmanager
 def on_cluster(request: Request, folder: Path | None, address: str) -> Iterator[Executor]:
-    """Provide the workers of a scheduler for the rows of a sweep.
+    """Yield the workers of a scheduler, for the rows of a sweep.
 
     Args:
         request: the sweep.

@@ -54,7 +54,7 @@ class Executor:
 
 
 class Interrupted(Exception):
-    """A part was given up because the sweep ends."""
+    """A part was abandoned because the sweep is ending."""
 
 
 def drive(
@@ -64,7 +64,7 @@ def drive(
     keep: Callable[[int, Part], None],
     report: Callable[[int], None],
 ) -> Tally:
-    """Run parts to their end; return the tally of all.
+    """Run all parts and return the sum of their tallies.
 
     The rows of a part whose worker died are run alone, one after the other. Those whose worker dies
     again are crashed.
@@ -129,7 +129,7 @@ def solve_and_save(
     promote: Promote = promoted,
     stop: threading.Event | None = None,
 ) -> Part:
-    """Return rows solved; save a whole part if there is a folder, and return its tally alone.
+    """Solve rows and return them; with a folder, save the part and return only its tally.
 
     Raises:
         Interrupted: the event `stop` was set meanwhile.
@@ -154,7 +154,7 @@ def solve_and_save(
 
 @contextmanager
 def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
-    """Provide workers on this machine.
+    """Yield workers on this machine.
 
     If the sweep is interrupted, processes are ended. Threads end after their block of rows, which
     may take minutes, and are not waited for.
@@ -206,7 +206,7 @@ def compute(text: str, rows: range, folder: Path | None) -> Part:
 
 
 def isolated(pool: Pool, request: Request, row: int, *, doubtful: bool) -> Promoted:
-    """Call `promoted` in another process: the solver is not made for several threads."""
+    """Call `promoted` in another process, because the solver is not thread-safe."""
     try:
         result: Promoted = pool.submit(compute_alone, request.text, row, doubtful).result()
     except WorkerDied as death:

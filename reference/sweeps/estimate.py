@@ -91,7 +91,7 @@ class SectionPassages:
 
 
 def errors_by_moved_runs(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
-    """Return the errors of a run, estimated by one or two moved runs, and where one of these stopped."""
+    """Return the errors of a run, estimated from one or two perturbed runs, and the rows where one of these stopped."""
     moved = engine.solve(rows, MOVED)
     estimated = errors(rows, run, moved)
     stopped = moved.fate == STOPPED
@@ -134,7 +134,7 @@ def _farthest(rows: Rows, run: Outcomes, moved: Outcomes, back: Outcomes, again:
 
 
 def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = _FACTOR) -> Errors:
-    """Return the errors of a run: its difference from the moved run times a factor."""
+    """Return estimated errors of a run: its difference from the perturbed run times a factor."""
     length = rows.length[:, 0]
     rate = rows.rate
     gap = run.state - moved.state
@@ -286,7 +286,7 @@ def bend_of_pairs(rows: Rows, angle: Array) -> Array:
 def passages(
     engine: Batch, word: str, rows: Rows, run: Outcomes, errors: Errors
 ) -> tuple[dict[str, Any], Any]:
-    """Return the columns of a section, and in which rows its passages are undecided.
+    """Return the columns of a section, and the rows in which its passages are undecided.
 
     Args:
         engine: solves the rows for these passages.
@@ -309,7 +309,7 @@ def passages(
 
 
 def passages_listed(word: str, error: Array, zeros: SectionPassages) -> tuple[dict[str, Any], Any]:
-    """Return the columns of a section, and in which rows a number has no error.
+    """Return the columns of a section, and the rows in which a number has no error estimate.
 
     Args:
         word: the section.
@@ -338,7 +338,7 @@ def passages_listed(word: str, error: Array, zeros: SectionPassages) -> tuple[di
 
 
 def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
-    """Return the columns by name, and in which rows a number has no error: there both are NaN."""
+    """Return the columns by name, and the rows in which a number has no error estimate: there both are NaN."""
     span = run.t_last - run.t_first
     with np.errstate(divide="ignore", invalid="ignore"):
         swing, precession = swing_and_precession(run)

@@ -115,7 +115,7 @@ def _errors_of_highest(
 
 
 def unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
-    """Return where the number of highest points is uncertain; the errors are in m and m/s."""
+    """Return the rows whose number of highest points is uncertain; the errors are in m and m/s."""
     has_points = run.apsides > 0
     at_end = has_points & _may_be_highest_at_end(rows, run, position, velocity)
     # the bend consists of two squares, each wrong by twice the relative error of the position
@@ -226,7 +226,7 @@ class SolvedPoints:
 
     @property
     def is_bent(self) -> Array:
-        """Whether the bob falls clearly from each point, and does not go round on a cone."""
+        """Whether the bob clearly falls from each point instead of circling on a cone."""
         return np.asarray(self.fall > LEAST_BEND * (self.rows.rate * self.across) ** 2)
 
     @property
@@ -241,7 +241,7 @@ class SolvedPoints:
         return bool(self.rows.rising[0] > 0 and slow and not another.any())
 
     def fill(self, run: Outcomes) -> None:
-        """Fill in the largest angle, and the highest points if they are decided and no cone's."""
+        """Fill in the largest angle, and the highest points if they are decided and the motion is not conical."""
         run.largest_angle[0] = self.angle.max()
         first = 0 if self.release_counts else 1
         times = np.append(0.0, self.table["t"])[first:]

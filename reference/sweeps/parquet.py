@@ -1,4 +1,4 @@
-"""The columns of a sweep and Parquet files of them; the only door to pyarrow.
+"""The columns of a sweep, and Parquet files of them; the only module that uses pyarrow.
 
 A file that is written here is sealed: near its end is the sha256 of all other bytes and of the
 part's name.
@@ -152,7 +152,7 @@ def read_columns(stream: BinaryIO, check: Callable[[list[str], int], None]) -> d
 
 
 def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, Any]:
-    """Return columns of several files, one below the other; words as objects, None if missing.
+    """Return the concatenated columns of several files; words as objects, None if missing.
 
     Raises:
         OSError: a file cannot be read, or was damaged.

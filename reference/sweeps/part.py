@@ -1,4 +1,4 @@
-"""A part of a sweep solved: its rows side by side, with their errors, and some by the solver."""
+"""Solve a part of a sweep: its rows side by side, with their errors, and some rows by the solver."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Part:
 
     @classmethod
     def unsolved(cls, request: Request, numbers: range) -> Part:
-        """Return rows without results; those with a wrong value have failed."""
+        """Return a part without results, in which the rows with invalid values have failed."""
         table = request.table
         reading = request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
@@ -123,7 +123,7 @@ class Part:
                 self.columns[name][places] = value
 
     def fail(self, place: int, status: Status, reason: str) -> None:
-        """Set the status of a row that failed and the reason, and take its numbers away."""
+        """Set the status and the reason of a row that failed, and remove its numbers."""
         self.fill(place, {**self.nothing, "status": status.value, "reason": reason})
 
     def add_transits(self, rows: Any, times: Any, directions: Any) -> None:
@@ -149,7 +149,7 @@ def _joined(tables: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def solve_part(request: Request, numbers: range, promote: Promote | None = promoted) -> Part:
-    """Return rows solved; a row that fails says so, and the others go on.
+    """Solve the rows of a part; a row that fails gets a status, and the others continue.
 
     Args:
         request: the sweep.
@@ -186,7 +186,7 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
         if reason == _STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
         elif promote is None:
-            part.fail(place, Status.DOUBTFUL, f"{reason} It takes more digits.".strip())
+            part.fail(place, Status.DOUBTFUL, f"{reason} The row needs more digits.".strip())
         else:
             _promote(request, part, place, reason, promote)
 
@@ -272,7 +272,7 @@ def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
 
 
 def highest_on_one_side(request: Request) -> bool:
-    """Return whether successive highest points of the first row are on one side."""
+    """Return whether successive highest points of the first row lie on the same side."""
     rows = engine_rows(request.scene, request.table, range(1))
     for engine, chosen in _shared(request.engine, rows):
         run = engine.solve(rows[chosen], request.run_options)

@@ -91,7 +91,7 @@ def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:
 
 @dataclass(frozen=True)
 class Promoted:
-    """A row as the solver gives it, or the reason why it could not solve it.
+    """A row as solved by the solver, or the reason why the solver failed.
 
     Attributes:
         values: its columns by name.
@@ -214,7 +214,7 @@ def audited(
     read: Callable[[int], Mapping[str, Any]],
     report: Callable[[int], None] = lambda _: None,
 ) -> RowAudit:
-    """Solve a sample of the rows again: the request says how many, its hash which.
+    """Solve a sample of the rows again; the request sets its size, and the request's hash selects the rows.
 
     Args:
         request: the sweep.

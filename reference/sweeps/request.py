@@ -21,7 +21,7 @@ from pydantic.dataclasses import dataclass as checked
 from ..engines import AUTO
 from ..engines.batch_interface import Batch, RunOptions
 from ..engines.registry import batches
-from ..errors import InputError, check_whole, unknown
+from ..errors import NOTHING, Described, InputError, check_whole, unknown
 from ..model.sections import direction_of
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
@@ -98,13 +98,13 @@ class Settings:
             checked_value("run.digits", str(self.digits), reading)
         tolerance = self.tolerance
         if tolerance is not None and not (isinstance(tolerance, Real) and tolerance >= 0):
-            raise InputError("--tolerance", tolerance, "a number of metres from 0")
+            raise InputError("--tolerance", tolerance, "a number of metres, 0 or more")
         if self.audit is not None:
-            check_whole("--audit", self.audit, 0, "a number of rows from 0")
+            check_whole("--audit", self.audit, 0, "a number of rows, 0 or more")
 
     @property
     def promotes(self) -> bool:
-        """Whether every row goes through the solver, by its level or digits."""
+        """Whether every row is solved by the solver, because of the level or the digits."""
         return self.level != "computed" or self.digits is not None
 
     @property
@@ -159,12 +159,12 @@ class Request:
 
     @property
     def promotes(self) -> bool:
-        """Whether every row goes through the solver, by its level or digits."""
+        """Whether every row is solved by the solver, because of the level or the digits."""
         return self.level != "computed" or self.digits is not None
 
     @property
     def solved_by(self) -> str:
-        """The name of what solves the rows: an engine for many at once, or the solver."""
+        """What solves the rows: the name of an engine for many rows, or the solver."""
         return "the solver" if self.promotes else self.engine
 
     @property
@@ -201,7 +201,7 @@ class Request:
 
     @property
     def rows_per_audited(self) -> float:
-        """About how many rows take as long as one row of the audit."""
+        """An estimate of how many rows take as long as one row of the audit."""
         if self.promotes:
             return 1.0
         audited_s = _AUDITED_S + _AUDITED_SWING_S * _swings(self.scene)
@@ -213,7 +213,7 @@ class Request:
         return range(first, min(first + self.rows_per_part, self.table.count))
 
     def part_of(self, row: int) -> int:
-        """Return the part in which a row is."""
+        """Return the part that contains a row."""
         return row // self.rows_per_part
 
     def scene_of(self, row: int) -> Scene:
@@ -227,7 +227,7 @@ class Request:
         return self.scene.with_values(values | {"run.grid_step": t_end})
 
     def document(self) -> dict[str, Any]:
-        """Return the request as JSON, all that decides the digits."""
+        """Return the request as a JSON document of everything that the digits depend on."""
         return {
             "schema": _SCHEMA,
             "scene": self.scene.model_dump(exclude_none=True),
@@ -283,7 +283,7 @@ def request(
     settings.check(scene.inputs)
     words = list(over)
     if bool(words) == (rows is not None):
-        got = " ".join(words) or "nothing"
+        got = Described("both --over and --rows") if words else NOTHING
         expected = "--over KEY=…, or --rows FILE"
         raise InputError("--over", got, expected, "Give one of the two.")
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
@@ -326,8 +326,8 @@ def _check_release(scene: Scene, keys: Iterable[str]) -> None:
     for key in keys:
         if key in refused:
             names = ", ".join(f"release.{name}" for name in kind)
-            expected = f"one of {names}, the scene's kind of release"
-            raise InputError("--over", key, expected, "Or take a scene with the other kind.")
+            expected = f"one of {names}, by which this scene is released"
+            raise InputError("--over", key, expected, "Or choose a scene released the other way.")
 
 
 def _swings(scene: Scene) -> float:

@@ -71,7 +71,7 @@ def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
 
 
 def engine_rows(scene: Scene, table: AxisTable, numbers: Any, section: str = "") -> Rows:
-    """Return the constants and releases of rows; not finite where the scene is wrong.
+    """Return the constants and releases of rows; not finite for invalid scenes.
 
     Args:
         scene: the scene that is varied.

@@ -22,12 +22,12 @@ class EstimatedSwing:
     """Period and precession of a scene with estimated errors. For proofs: `Solution.swing`.
 
     Attributes:
-        over_s: the time in s over which they are means.
-        period_s: of a swing to and fro, in s.
-        period_error_s: of it, in s.
+        over_s: the time in s over which period and precession are averaged.
+        period_s: time of a swing to and fro, in s.
+        period_error_s: estimated error of the period, in s.
         precession_deg_per_h: turn of the swing plane about the plumb line, east to north; None
             where `reason` says why.
-        precession_error_deg_per_h: of it.
+        precession_error_deg_per_h: estimated error of the precession.
         reason: why there is no precession; "" if there is one.
     """
 
@@ -54,7 +54,7 @@ class EstimatedSwing:
 
     @property
     def may_stand_still(self) -> bool:
-        """Whether the precession is no larger than its error."""
+        """Whether the precession is at most as large as its error."""
         rate = self.precession_deg_per_h
         return rate is not None and not abs(rate) > self.precession_error_deg_per_h
 

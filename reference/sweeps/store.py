@@ -49,7 +49,7 @@ class Store:
 
     @classmethod
     def begun(cls, folder: Path, request: Request) -> Store:
-        """Begin a folder, or go on with that of the same sweep.
+        """Create the folder of a sweep, or open it to resume the same sweep.
 
         Raises:
             InputError: it holds another sweep, or something else, or other versions would write
@@ -86,14 +86,16 @@ class Store:
             request = Request.of(document)
             unchanged = request.hash == document["hash"]
         except FileNotFoundError:
-            expected = f"a folder of a sweep, with {PLAN}"
-            advice = "Give a scene and --over to begin one."
+            expected = f"the folder of a sweep, with {PLAN}"
+            advice = "To begin a sweep, give a scene and --over."
             raise InputError("--out", str(folder), expected, advice) from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
             unchanged = False
         if not unchanged:
-            expected = f"a {PLAN} as this version writes it"
-            raise InputError("--out", str(folder), expected, "Sweep anew.")
+            expected = f"a {PLAN} written by this version and not changed"
+            raise InputError(
+                "--out", str(folder), expected, "Begin the sweep again in another folder."
+            )
         return cls(folder, request, str(document.get("pyarrow")))
 
     def _check_same(self, request: Request) -> None:
@@ -106,15 +108,17 @@ class Store:
         keys = sorted(asked.keys() - {"identity"})  # the identity has versions, compared below
         differing = [key for key in keys if json.dumps(stored.get(key)) != json.dumps(asked[key])]
         if differing:
-            expected = f"the sweep that is there, which differs in {', '.join(differing)}"
-            raise InputError("--out", str(self.folder), expected, "Take another folder.")
+            expected = (
+                f"the same sweep as the one in the folder, which differs in {', '.join(differing)}"
+            )
+            raise InputError("--out", str(self.folder), expected, "Choose another folder.")
         versions = {
             request.identity: self.request.identity,
             f"pyarrow {version('pyarrow')}": f"pyarrow {self.pyarrow}",
         }
         for got, expected in versions.items():
             if got != expected:
-                advice = "Install the versions that the sweep was begun with, or begin it anew in another folder."
+                advice = "Install the versions with which the sweep began, or begin it again in another folder."
                 raise InputError("--out", got, f"{expected}, as in {self.folder / PLAN}", advice)
 
     @property
@@ -127,7 +131,7 @@ class Store:
         return self.folder / kind / f"part-{part:08d}.parquet"
 
     def missing(self) -> list[int]:
-        """Return the parts that do not exist yet, were damaged, or have another part's seal."""
+        """Return the parts that are missing or damaged, or have the seal of another part."""
         return [
             part
             for part in range(self.request.parts)
@@ -148,7 +152,7 @@ class Store:
         return f"{kind} {part} of {self.request.hash}"
 
     def save(self, part: int, solved: Part) -> None:
-        """Write a part, whole or not at all.
+        """Write a part completely or not at all.
 
         Raises:
             InputError: it cannot be written.
@@ -172,7 +176,7 @@ class Store:
         _write(self.folder / SUMS, sums_text(files).encode())
 
     def foreign(self) -> list[str]:
-        """Return the files beside the parts that are not the sweep's, by their paths in its folder.
+        """Return the files in the folder that do not belong to the sweep, by their paths in it.
 
         Names that begin with a dot are left out, as programs that read Parquet do.
         """
@@ -185,7 +189,7 @@ class Store:
     def read(
         self, names: list[str] | None = None, kind: str = _ROWS, parts: Iterable[int] | None = None
     ) -> dict[str, Any]:
-        """Return columns of parts as arrays, one below the other: all if none are named.
+        """Return columns of the concatenated parts as arrays; all columns if none are named.
 
         Raises:
             InputError: a part was damaged or lost since its seal was checked.
@@ -194,10 +198,8 @@ class Store:
         try:
             return arrays([self.path(part, kind) for part in chosen], names)
         except OSError as error:
-            advice = f"{error.strerror or error}. Go on with `foucault sweep --out {self.folder}`."
-            raise InputError(
-                "sweep", str(self.folder), "parts as they were written", advice
-            ) from None
+            advice = f"{error.strerror or error}. Resume with `foucault sweep --out {self.folder}`."
+            raise InputError("sweep", str(self.folder), "parts that can be read", advice) from None
 
 
 def _check_empty(folder: Path) -> None:
@@ -205,7 +207,7 @@ def _check_empty(folder: Path) -> None:
     if not folder.exists():
         return
     if not folder.is_dir() or any(_is_foreign(path) for path in folder.iterdir()):
-        raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
+        raise InputError("--out", str(folder), "a new or empty folder, or the folder of this sweep")
 
 
 def _is_foreign(path: Path) -> bool:

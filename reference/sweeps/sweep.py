@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..engines import AUTO
-from ..errors import InputError, check_whole, checked_path
+from ..errors import NOTHING, InputError, check_whole, checked_path
 from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
 from ..system.imports import needed
 from ..system.workers import usable_cores
@@ -58,28 +58,27 @@ def sweep(
             fastest.
         t_end: end of each run in s; None for the scene's.
         rows: instead, a CSV or Parquet file whose columns are fields, one row a scene.
-        out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A sweep that the folder
-            holds is resumed.
+        out: a folder for the rows, in Parquet; needed for more than 100,000 rows. A sweep in the
+            folder is resumed.
         want: quantities: frequency, precession, transits, state, amplitude, all of these,
             transit-times.
         sections: other moments to find, such as ["highest", "gate 30"], instead of the scene's.
-        level: level of trust; above computed every row goes through `solve`.
-        digits: significant digits, of every row through `solve`; None for double.
-        tolerance: rows with a larger error of the position in m go through `solve` as well.
+        level: level of trust; above computed every row is solved by `solve`.
+        digits: significant digits; with them every row is solved by `solve`. None for double.
+        tolerance: rows with a larger estimated position error, in m, are solved by `solve` too.
         engine: the engine that solves many rows at once; "auto" takes the one expected to finish
             first.
-        audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`,
-            none without.
-        workers: threads, or processes where rows go through `solve`; None for one a core.
-        cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on
-            this machine.
+        audit_rows: number of rows that are solved again in 28 digits; None for a thousandth with
+            `out`, and none without.
+        workers: number of threads, or of processes for rows solved by `solve`; None for all cores.
+        cluster: address of a dask.distributed scheduler, or "local:N" for N workers on this machine.
         report: called with the number of rows that were done since the last call.
 
     Returns:
         A `Swept`: columns as arrays; a row that failed has a status and a reason, and no numbers.
 
     Raises:
-        InputError: a wrong axis, option or folder; before any work.
+        InputError: a wrong axis, option or folder; raised before any work.
     """
     file = folder = None
     if rows is not None:
@@ -137,21 +136,22 @@ def _check_memory(count: int) -> None:
         InputError: there are too many rows.
     """
     if count > _MOST_IN_MEMORY:
-        expected = f"a folder, for more than {_MOST_IN_MEMORY:,} rows"
-        raise InputError("--out", "nothing", expected, "Give --out DIR.")
+        expected = f"a folder, because there are more than {_MOST_IN_MEMORY:,} rows"
+        raise InputError("--out", NOTHING, expected, "Give --out DIR.")
 
 
 def load_sweep(folder: str | Path) -> Swept:
     """Return the sweep in a folder.
 
     Raises:
-        InputError: there is none, it is not complete, or a part of it was damaged.
+        InputError: there is no sweep, it is incomplete, or a part of it is damaged.
     """
     store = Store.opened(checked_path("folder", folder, "the folder of a sweep"))
     count = len(store.missing())
     if count:
-        advice = f"{count} of {store.request.parts} are missing or damaged. Go on with `foucault sweep --out {folder}`."
-        raise InputError("sweep", str(folder), "a sweep whose parts are all there", advice)
+        missing = f"{count} of {store.request.parts} parts are missing or damaged."
+        advice = f"{missing} Resume with `foucault sweep --out {folder}`."
+        raise InputError("sweep", str(folder), "a complete sweep", advice)
     return Swept(store.request, store)
 
 
@@ -163,7 +163,7 @@ def run(
     report: Report = lambda _: None,
     report_audit: Report = lambda _: None,
 ) -> Swept:
-    """Solve the parts that are not done yet, and audit; arguments as those of `sweep`.
+    """Solve the parts that are missing, then audit; arguments as those of `sweep`.
 
     `report_audit` is called with the number of rows that were audited.
     """

@@ -71,7 +71,7 @@ class Swept(Framed):
 
     @property
     def first_bad(self) -> int:
-        """The first row that is not ok; there must be one."""
+        """The first row whose status is not ok; there must be one."""
         statuses = chain.from_iterable(self._statuses())
         return next(row for row, status in enumerate(statuses) if status != Status.OK.value)
 
@@ -133,7 +133,7 @@ class Swept(Framed):
         return self.store.read(kind=TRANSITS)
 
     def rows(self, most: int | None = None) -> Iterator[dict[str, Any]]:
-        """Yield the first rows by column, as Python values; None for a missing number."""
+        """Yield the first rows as dictionaries by column, with Python values; None for a missing number."""
         columns = {name: values[:most].tolist() for name, values in self.columns().items()}
         for values in zip(*columns.values(), strict=True):
             row = dict(zip(columns, values, strict=True))

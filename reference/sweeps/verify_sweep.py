@@ -29,13 +29,13 @@ def verify_sweep(folder: Path) -> tuple[list[str], list[str]]:
         )
     for name in store.foreign():
         problems.append(
-            f"{name} is no part of this sweep: remove it, as whoever reads the folder would take its rows"
+            f"{name} is not a part of this sweep: remove it, programs that read the folder would include its rows"
         )
     try:
         problems += check_sums(folder)
     except FileNotFoundError:
         undecided.append(
-            f"{SUMMARY}, as there is no {SUMS}; `foucault sweep --out {folder}` writes it"
+            f"{SUMMARY}, because there is no {SUMS}; `foucault sweep --out {folder}` writes it"
         )
     if not problems:
         problems += _summary_problems(store)
@@ -55,4 +55,4 @@ def _summary_problems(store: Store) -> list[str]:
     counted = {"rows": len(swept), "counts": swept.counts}
     if stated == counted:
         return []
-    return [f"{SUMMARY} counts {stated}, and the parts hold {counted}"]
+    return [f"{SUMMARY} says {stated}, but the parts contain {counted}"]

@@ -1,1 +1,1 @@
-"""Needs of the machine: other processes, signals, files and locks, compiled code, late imports."""
+"""The operating system: other processes, signals, files and locks, compiled code, late imports."""

@@ -40,7 +40,7 @@ def root() -> Path:
 
 
 def entry(kind: str, name: str) -> Path | None:
-    """Return the path of an entry, which may be damaged; None if it is missing or not trusted.
+    """Return the path of an entry, which may be damaged; None if there is no entry or it is not trusted.
 
     Args:
         kind: the folder of the entry.
@@ -51,7 +51,7 @@ def entry(kind: str, name: str) -> Path | None:
 
 
 def store(kind: str, name: str, put: Callable[[Path], object]) -> Path | None:
-    """Have `put(path)` write an entry, all or nothing; return its path.
+    """Let `put(path)` write an entry, completely or not at all; return its path.
 
     Return None if the cache cannot be used.
     """
@@ -68,7 +68,7 @@ def store(kind: str, name: str, put: Callable[[Path], object]) -> Path | None:
 
 
 def kept(kind: str, name: str, put: Callable[[Path], object]) -> Path:
-    """Return the path of an entry, which `put(path)` writes if need be.
+    """Return the path of an entry; `put(path)` writes it if it is missing.
 
     Without a cache it lasts as long as this process.
     """
@@ -81,7 +81,7 @@ def kept(kind: str, name: str, put: Callable[[Path], object]) -> Path:
 
 
 def check() -> None:
-    """Check that the cache can be used before child processes do; else give them a temporary one.
+    """Check that the cache can be used before child processes use it; otherwise give them a temporary one.
 
     Then only one line says so, they compile once for all, and leave nothing behind if they are
     killed.
@@ -129,19 +129,21 @@ def _say(why: str) -> None:
     """Say once, in this process and its children, why the cache cannot be used."""
     if not os.environ.get(_PRINTED):
         os.environ[_PRINTED] = "1"
-        print(f"foucault: the cache is not used, which costs time only: {why}.", file=sys.stderr)
+        print(
+            f"foucault: running without the cache, which only takes longer: {why}.", file=sys.stderr
+        )
 
 
 @functools.cache
 def temporary() -> Path:
-    """Return a folder that is removed with this process, for what needs a disk but has no cache."""
+    """Return a temporary folder that is removed when this process ends, for use without a cache."""
     stack = contextlib.ExitStack()
     atexit.register(stack.close)
     return stack.enter_context(workspace(Path(tempfile.gettempdir()), "foucault"))
 
 
 def discard(path: Path) -> None:
-    """Remove an entry, file or folder, that is damaged or in the way, if that is allowed."""
+    """Remove an entry (a file or folder) that is damaged or in the way, if permissions allow it."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
     else:
@@ -150,7 +152,7 @@ def discard(path: Path) -> None:
 
 
 def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[str, Array]:
-    """Return the arrays of an entry; `make()` computes them if it is missing or damaged."""
+    """Return the arrays of an entry; `make()` computes them if the entry is missing or damaged."""
     path = entry(kind, name)
     if path is not None:
         with contextlib.suppress(Exception):  # a damaged entry may raise anything; it is made again

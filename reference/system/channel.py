@@ -1,4 +1,4 @@
-"""Texts from deep inside long work to whoever shows its progress."""
+"""Text messages from inside long work to the code that shows its progress."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Channel:
 
     @contextmanager
     def heard_by(self, listener: Listener) -> Iterator[None]:
-        """Have `listener` called with each text that is sent meanwhile."""
+        """Call `listener` with each text that is sent inside this context."""
         self._listeners.append(listener)
         try:
             yield

@@ -1,4 +1,4 @@
-"""Checksums that find accidents in results: of files, in SHA256SUMS, and of each line of a journal.
+"""Checksums that detect accidental changes of results: of files, in SHA256SUMS, and of each line of a journal.
 
 `sha256sum -c SHA256SUMS` checks the files too. A journal grows line by line, so that each line
 carries its own seal.

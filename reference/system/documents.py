@@ -1,4 +1,4 @@
-"""Read files that a stranger may have written: regular, of bounded size, TOML and JSON not deep."""
+"""Read files from untrusted sources: only regular files of bounded size, and TOML and JSON of bounded depth."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def open_at_once(path: Path) -> BinaryIO:
     try:
         return open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK))
     except ValueError as error:
-        raise OSError(errno.EINVAL, f"No file has this path, {error}") from None
+        raise OSError(errno.EINVAL, f"This cannot be the path of a file: {error}") from None
 
 
 def toml_document(path: Path, field: str) -> dict[str, Any]:
@@ -56,7 +56,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
         text = data.decode("utf-8-sig")  # some editors write a byte order mark
         if _DEEP_KEY.search(text):
             raise InputError(
-                field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words"
+                field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} parts"
             )
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -64,7 +64,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
 
 
 def texts_of(module: str) -> dict[str, Any]:
-    """Return the TOML file of a module's name beside it; the module is given by its `__file__`."""
+    """Return the TOML document beside a module, of the same name; the module is given by its `__file__`."""
     return tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
@@ -76,12 +76,12 @@ def json_document(path: Path, field: str) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise InputError(field, str(path), "a JSON document", _reason(error)) from None
     if not isinstance(document, dict):
-        raise InputError(field, str(path), "a JSON document of keys and values")
+        raise InputError(field, str(path), "a JSON object of keys and values")
     return document
 
 
 def json_lines(path: Path, field: str) -> Iterator[dict[str, Any]]:
-    """Yield the dictionaries of a file of JSON lines, without other lines, such as one cut short.
+    """Yield the dictionaries in a file of JSON lines; other lines, such as a truncated one, are skipped.
 
     Arguments and errors are those of `toml_document`.
     """

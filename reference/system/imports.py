@@ -69,7 +69,7 @@ class Registry(UserDict[str, D]):
 
     @cached_property
     def data(self) -> dict[str, D]:  # type: ignore[override]
-        """The declarations, imported at the first look."""
+        """The declarations, imported at first use."""
         folder = import_module(self._package).__path__
         declared: list[D] = []
         for name in sorted(module.name for module in iter_modules(folder)):
@@ -99,17 +99,19 @@ def missing(modules: Iterable[str]) -> list[str]:
 
 
 def needed(module: str, extra: str, field: str, purpose: str, instead: str = "") -> None:
-    """Refuse a purpose that needs a module which is not installed, and say which extra brings it.
+    """Refuse work for which a module is not installed, and say which extra installs it.
 
     Raises:
         InputError: it is not.
     """
     if missing([module]):
-        raise NotInstalledError(field, purpose, _PACKAGES.get(module, module), extra, instead)
+        package = _PACKAGES.get(module, module)
+        requirement = f"'foucault-reference[{extra}]'"
+        raise NotInstalledError(field, purpose, package, requirement, instead)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:
-    """Return the environment variable that stops one of the modules from compiling, or None."""
+    """Return the environment variable that keeps one of the modules from compiling, or None."""
     variable = "NUMBA_DISABLE_JIT"
     is_set = os.environ.get(variable, "0") not in ("", "0")
     return variable if "numba" in modules and is_set else None
@@ -124,7 +126,7 @@ def _installed(module: str) -> bool:
 
 
 class OptionalEngine:
-    """An engine that needs modules which an extra brings.
+    """An engine whose modules are installed by an extra.
 
     Attributes:
         name: its name on the command line and in datasets: that of its folder.
@@ -138,11 +140,11 @@ class OptionalEngine:
 
     @property
     def installed(self) -> bool:
-        """Whether the modules that it requires are installed, and may compile."""
+        """Whether the modules it requires are installed and allowed to compile."""
         return not missing(self.requires) and not switched_off(self.requires)
 
     def check_installed(self) -> None:
-        """Refuse it where it is not installed.
+        """Raise InputError if it is not installed.
 
         Raises:
             InputError: it is not.
@@ -150,6 +152,8 @@ class OptionalEngine:
         without = "The engine heyoka does without"
         variable = switched_off(self.requires)
         if variable:
-            raise InputError("--engine", self.name, f"{variable} unset", f"Unset it. {without}.")
+            raise InputError(
+                "--engine", self.name, f"{variable} not to be set", f"Unset it. {without}."
+            )
         for module in self.requires:
             needed(module, self.extra, "--engine", f"the engine {self.name}", f". {without}")

@@ -1,4 +1,4 @@
-"""Signals that end a run (Ctrl-C, SIGTERM, SIGHUP): turned into exceptions, or held back."""
+"""Signals that end a run (Ctrl-C, SIGTERM, SIGHUP): turned into exceptions, or deferred."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _replaced(handlers: Mapping[int, Any], handler: Callable[..., object]) -> It
 
 @contextmanager
 def held() -> Iterator[None]:
-    """Hold signals back; processes and threads that start meanwhile begin with them blocked.
+    """Defer signals; processes and threads that start meanwhile begin with them blocked.
 
     Signals received meanwhile are handled in the end, in their order, also after an exception. In
     the main thread the handlers wait as well, whichever thread a signal reaches: an exception

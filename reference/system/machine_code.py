@@ -85,7 +85,7 @@ def kept(*sources: Path, **options: Any) -> Callable[[Function], Function]:
 
 
 def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
-    """Compile a function that is `kept` for arguments like these, or load it, once in a process.
+    """Compile a `kept` function for arguments like these, or load it, once per process.
 
     Args:
         function: what to compile.

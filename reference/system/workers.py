@@ -49,7 +49,7 @@ def usable_cores() -> int:
 
 
 class WorkerDied(Exception):
-    """The process that was at work ended without a result; the text says how."""
+    """The working process ended before it returned a result; the text says how."""
 
 
 class Worker:
@@ -95,7 +95,7 @@ class Worker:
             item = self._connection.recv() if in_time else None
         except (EOFError, OSError, pickle.UnpicklingError):
             raise IntegrationError(
-                "a child process of the solver ended without a result."
+                "a child process of the solver ended before it returned a result."
             ) from None
         if not in_time:
             raise TimeoutError
@@ -109,7 +109,7 @@ class Worker:
             yield item
 
     def stop(self) -> None:
-        """Close the line, which ends the process if it is still at work, and wait for its end.
+        """Close the connection, which ends the process if it is still working, and wait for its end.
 
         After `_GRACE_S` it is killed.
         """
@@ -139,7 +139,7 @@ class Worker:
 
 
 class Pool:
-    """Processes that each do one call at a time; a call whose process dies is tried once more.
+    """Processes that each do one call at a time; a call whose process dies is tried again once.
 
     Args:
         workers: how many processes at most; each starts when it is needed.
@@ -204,7 +204,7 @@ def as_done(
     at_once: int,
     check: Callable[[], None] | None = None,
 ) -> Iterator[tuple[Item, Future[Any]]]:
-    """Begin items, and yield each with its future when it is done.
+    """Start items, and yield each with its future when it is done.
 
     Args:
         begin: begins an item.

@@ -1,4 +1,4 @@
-"""Write a file or a folder whole or not at all: in a hidden folder beside it, then renamed.
+"""Write a file or a folder completely or not at all: into a hidden folder beside it, then renamed.
 
 What killed processes left behind is removed later. A folder in use is locked by a file in it.
 Process numbers would not do: they repeat in containers, and where several machines share a disk. On
@@ -25,7 +25,7 @@ _LEFT_BEHIND = re.compile(r"\.(.+)\.partial-\w+", re.DOTALL)
 
 @contextmanager
 def workspace(parent: Path, name: str) -> Iterator[Path]:
-    """Provide a new folder in `parent` for the making of `name`; remove it in the end.
+    """Yield a new folder in `parent` in which to make `name`; remove it at the end.
 
     Folders that killed processes left behind for the same name are removed first. If `parent/name`
     is missing in the end and `OLD` is in the folder, that is put back.
@@ -63,7 +63,7 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Have `write(stream)` write a file, which then replaces the old one in one step.
+    """Let `write(stream)` write a file, which then replaces the old one in one step.
 
     Raises:
         OSError: the disk is full or cannot be written.

@@ -102,9 +102,9 @@ def test_long_doubles_keep_their_digits(golden, states):
 @pytest.mark.parametrize(
     ("t", "rows", "more", "words"),
     [
-        ([0.0], [0.3, 0.4], {}, "states: got 'shape"),
-        ([0.0], [[0.3, 0.4, 0, 0]], {}, "states: got 'shape"),
-        ([0.0, 1.0], [[0.3, 0.4]], {}, "2 numbers, as t"),
+        ([0.0], [0.3, 0.4], {}, "states: got shape"),
+        ([0.0], [[0.3, 0.4, 0, 0]], {}, "states: got shape"),
+        ([0.0, 1.0], [[0.3, 0.4]], {}, "2 numbers, as many as t has"),
         ([[0.0]], [[0.3, 0.4]], {}, "states: t"),
         ([0.0], [[0.3, float("nan")]], {}, "nan in row 1"),
         ([0.0], [["0.3", "0.4"]], {}, "real numbers"),
@@ -243,6 +243,7 @@ def test_states_that_stand_in_columns_are_said_to_be_transposed(golden, columns)
         [getattr(golden, name)[:50] for name in ("x", "y", "vx", "vy", "z", "vz")[:columns]]
     )
     with pytest.raises(
-        InputError, match=rf"shape \({columns}, 50\) for 50 times.*transpose them, as in sol\.y\.T"
+        InputError,
+        match=rf"shape \({columns}, 50\) for 50 times.*transpose the array, as in sol\.y\.T",
     ):
         assert_agrees("paris", golden.t[:50], states.T)

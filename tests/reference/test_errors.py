@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 from reference import InputError, load_scene, scene_ids
-from reference.errors import counted, did_you_mean, in_words, nearest
+from reference.errors import (
+    NOTHING,
+    Described,
+    NoEffectError,
+    counted,
+    did_you_mean,
+    in_words,
+    nearest,
+)
 from reference.scenes.scene import field_names
 
 
@@ -84,3 +92,17 @@ def test_every_field_of_a_scene_has_a_name_that_set_takes():
 def test_an_empty_scene_is_told_what_a_scene_is(word):
     with pytest.raises(InputError, match="expected a scene's id or the path of a TOML file"):
         load_scene(word)
+
+
+def test_what_a_user_gave_is_quoted_and_what_we_describe_is_not():
+    assert str(InputError("SCENE", "pari", "a scene")) == "SCENE: got 'pari', expected a scene."
+    assert str(InputError("SCENE", NOTHING, "a scene")) == "SCENE: got nothing, expected a scene."
+    described = InputError("run.csv", Described("no rows\x1b[2J"), "at least one row")
+    assert str(described) == "run.csv: got no rows\\x1b[2J, expected at least one row."
+    assert described.got == "no rows\x1b[2J"
+
+
+def test_an_option_without_effect_is_named_with_the_case_and_is_a_users_mistake():
+    error = NoEffectError("--timeout", "3", "without --run")
+    assert isinstance(error, InputError) and error.exit_status == 2
+    assert str(error) == "--timeout: has no effect without --run. Leave it out."

@@ -92,7 +92,7 @@ def test_values_that_python_cannot_print_are_named_by_their_kind():
     for _ in range(100_000):
         deep = [deep]
     for value, word in ((10**5000, "int"), (-(10**5000), "int"), (deep, "list")):
-        assert f"too large a value to print, {word}" in str(
+        assert f"a value too large to print, of type {word}" in str(
             InputError("run.digits", value, "a number")
         )
 

@@ -1,4 +1,4 @@
-"""The initial value problem as methods get it: start and constants in double, right-hand side, conversion to metres.
+"""The initial value problem for methods: start and constants in double, right-hand side, conversion to metres.
 
 How far and how fast a bob can get, by its energy, gives the scales for tolerances, and which
 formulations hold.
@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
-from reference.errors import BeyondDoublesError
+from reference.errors import BeyondDoublesError, Described
 from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
@@ -101,7 +101,7 @@ class FirstOrderSystem:
 
 @dataclass(frozen=True)
 class SwingReach:
-    """How far and how fast the bob can get, from its energy about the rest position.
+    """Bounds on how far and how fast the bob can move, from its energy about the rest position.
 
     Without the small gradient of the centrifugal force v²/2 - n·c is constant, so that the angle
     from the rest position c/|c| never exceeds the one where v would vanish, nor the speed its value
@@ -119,7 +119,7 @@ class SwingReach:
 
     @classmethod
     def of(cls, start: Start) -> SwingReach:
-        """Return the swing that follows from the release.
+        """Return the reach of the swing that follows from the release.
 
         Raises:
             UnreachableError: a number of the scene is too large for binary64.
@@ -192,7 +192,10 @@ class Problem:
             state = start.state(model)
         except ValueError as error:
             raise InputError(
-                "formulation", formulation, "one that holds at the release", f"{error}."
+                "formulation",
+                formulation,
+                "a formulation that is valid at the release",
+                f"{error}.",
             ) from None
         if times is None:
             times = [float(t) for t in scene.exact.grid]
@@ -209,7 +212,7 @@ class Problem:
 
     @property
     def parameters(self) -> Array:
-        """Values of the system's parameters, in its order; at least one, for libraries that refuse none."""
+        """Values of the system's parameters, in its order; at least one, for libraries that require one."""
         return np.array([*self.system.parameters.values()] or [0.0])
 
     @cached_property
@@ -225,7 +228,7 @@ class Problem:
         return cast(Filling, self.compiled(self.system.jacobian, _SLOPES, j=targets).slopes)
 
     def compiled(self, program: StraightLine, template: str, **texts: object) -> ModuleType:
-        """Return the compiled module of a program, as the function `traced`, and of a template with texts filled in.
+        """Return the module compiled from a program (the function `traced`) and a template with texts filled in.
 
         Arguments and targets in the template: `${y}`, `${z}`, `${f}`, `${p}`, `${dy}` are the
         elements of arrays of these names, as many as variables (`${size}`); `${k}` are those of the
@@ -268,7 +271,7 @@ def slopes(y, k, j):
 def _increasing(times: npt.ArrayLike) -> Array:
     t = np.array(times, dtype=np.float64).ravel()
     if len(t) < 2 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
-        given = t.tolist() if len(t) < 9 else "an array"
+        given = t.tolist() if len(t) < 9 else Described("an array")
         raise InputError("times", given, "at least two finite times, increasing from 0")
     return t
 

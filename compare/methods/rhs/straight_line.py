@@ -70,7 +70,7 @@ class StraightLine:
 
 
 def elements(array: str, count: int, row: str = "") -> str:
-    """Return the elements of an array (of its row, if one is named), each with a comma behind it."""
+    """Return the elements of an array (or of one of its rows) as text, each followed by a comma."""
     return "".join(f"{array}[{row and row + ', '}{i}], " for i in range(count))
 
 

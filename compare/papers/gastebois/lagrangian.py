@@ -208,7 +208,7 @@ def _flat_end(p: Point) -> Vector:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     lines = (
         ("x", "v_φ cosθ Ω sinλ_a", "v_φ cosφ Ω sinλ_a"),
         ("y", "v_φ sinθ Ω sinλ_a", "v_φ sinφ Ω sinλ_a"),

@@ -206,7 +206,7 @@ def pantheon_on_sphere(s: Any) -> Point:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return section("gastebois_", "Gastebois",
         Identity("3_1_v", "3.1", "dOM/dt = x' i + x Ω j + y' j - y Ω i + z' k",
             lambda p: (p.vx - p.y * p.rate, p.x * p.rate + p.vy, 0), _seen_at_rest(1)),

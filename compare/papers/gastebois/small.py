@@ -110,7 +110,7 @@ def _roots(p: Point) -> Vector:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return section("gastebois_", "Gastebois",
         Identity("5_newton", "5", "a = m g_a + T + 2 m v × Ω",
             acceleration_of, forces, "m a = m g_a + T + 2 m v × Ω",

@@ -95,7 +95,7 @@ def _after_a_swing(p: Point) -> Vector:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     up = RATE * sin(radians(PANTHEON_LATITUDE))
     w = sqrt(GRAVITY / PANTHEON_LENGTH)
     spread = 1 + mpf("0.375") * (PANTHEON_RELEASE / PANTHEON_LENGTH) ** 2

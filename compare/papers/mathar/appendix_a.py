@@ -93,7 +93,7 @@ def _effect_of_the_digit() -> Any:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return [
         *section("mathar_", "Mathar VIII",
             Statement("viii_steps", "", "a program with variable Runge-Kutta-Nyström orders of the step control",

@@ -167,7 +167,7 @@ def in_powers(p: Point, factors: Vector) -> Any:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return section("mathar_", "Mathar II",
         Identity("1", "(1)", "X_s = ((N+h) cosϕ cosΩt, (N+h) cosϕ sinΩt, [N(1-e²)+h] sinϕ)",
             printed_suspension, lambda p: suspension(p, p.rate * p.t),

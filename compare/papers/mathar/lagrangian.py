@@ -222,7 +222,7 @@ def _east_unbiased() -> Answer:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     in_angles = section("mathar_", "Mathar III",
         Identity("20", "(20)", "K = m (α0 + α1 Ω + α2 Ω²) / 2",
             lambda p: p.mass / 2 * in_powers(p, alphas(p)),

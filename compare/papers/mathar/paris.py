@@ -166,7 +166,7 @@ def _slowed(by: Any) -> Answer:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     p = paris()
     return section("mathar_", "Mathar VII",
         PrintedNumber("vii_l", "", "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),

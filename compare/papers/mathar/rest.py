@@ -170,7 +170,7 @@ def _vector_sum(p: Point) -> Vector:
 
 
 def _section_v() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return section("mathar_", "Mathar V",
         Statement("44_x", ", before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
         Identity("44_text", ", before (44)", "β_x0 and β_x1 are both proportional to x (vanish at x = 0)",
@@ -243,7 +243,7 @@ def _coriolis(accelerations: Callable[[Point], Vector]) -> Callable[[Point], Vec
 
 
 def _section_vi() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     share = paris().case.outward / paris().gravity
     place = "s × the amplitude of Paris, half way through a swing"
     return section("mathar_", "Mathar VI",
@@ -283,5 +283,5 @@ def _section_vi() -> list[Check]:
 
 
 def checks() -> list[Check]:
-    """Return the rows, in the order of print."""
+    """Return the rows in the order in which they are printed."""
     return [*_section_v(), *_section_vi()]

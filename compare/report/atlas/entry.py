@@ -1,4 +1,4 @@
-"""A scene of the atlas: its datasets in a folder, in both readings of the inputs, and how methods fare on it."""
+"""A scene of the atlas: its datasets in a folder, in both readings of the inputs, and results of methods on it."""
 
 from __future__ import annotations
 
@@ -99,17 +99,17 @@ class Entry:
 
     @property
     def id(self) -> str:
-        """Its id, and the name of its page."""
+        """The scene's id, which is also the name of its page."""
         return _name(self.golden)
 
     @property
     def datasets(self) -> list[Golden]:
-        """Its one or two datasets."""
+        """The scene's one or two datasets."""
         return [self.golden] if self.golden is self.judged else [self.golden, self.judged]
 
     @property
     def flags(self) -> tuple[str, ...]:
-        """Why it is difficult."""
+        """Why the scene is difficult: its flags."""
         return tuple(self.golden.manifest.flags)
 
     def score_command(self) -> str:
@@ -152,7 +152,7 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
     if not paths:
         advice = "`foucault generate --all` makes those that ship."
         raise InputError(
-            "--data", str(folder), "a folder of golden datasets, each a folder in it", advice
+            "--data", str(folder), "a folder that contains the folders of golden datasets", advice
         )
     readings: dict[str, dict[str, Golden]] = {}
     for path in paths:
@@ -185,7 +185,7 @@ def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     """
     if folder is not None and not folder.is_dir():
         advice = "`foucault study … --out DIR` writes one."
-        raise InputError("--studies", str(folder), "a folder of results", advice)
+        raise InputError("--studies", str(folder), "a folder of study results", advice)
     results: defaultdict[str, StudyResults] = defaultdict(StudyResults)
     paths = [] if folder is None else sorted(folder.glob("*.json"))
     for path in paths:

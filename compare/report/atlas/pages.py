@@ -52,7 +52,7 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
         [_filters(scenes), *sections],
         lead=paragraph(
             f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene "
-            "says what it catches and what stands behind its numbers, judges your program's output in the browser, and "
+            "says what it catches and the evidence for its numbers, judges your program's output in the browser, and "
             "plays the motion where the scene has a golden function."
         ),
         script=_script("filtering.js"),

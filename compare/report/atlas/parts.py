@@ -1,4 +1,4 @@
-"""Parts of the pages of the atlas: flags, pictures, certified state, certificate, files, inputs, how methods fare.
+"""Parts of the atlas's pages: flags, pictures, certified state, certificate, files, inputs, results of methods.
 
 Besides: the numbers and words by which the script of a page judges a file in the browser.
 """
@@ -43,7 +43,7 @@ _IMPORTED = {"IO", "UTC"}  # names in capitals that the modules of the vocabular
 
 
 def pictures(svgs: Sequence[str]) -> Html:
-    """Return pictures that stand side by side, or below each other on a narrow screen."""
+    """Return pictures side by side, or below each other on a narrow screen."""
     return Html('<div class="pictures">\n' + "".join(svgs) + "</div>")
 
 
@@ -72,7 +72,7 @@ def state(golden: Golden) -> Html:
 
 
 def certificate(golden: Golden) -> Mapping[str, str]:
-    """Return bound, level, what stands behind it, and the transits, by name."""
+    """Return bound, level, the evidence for it, and the transits, by name."""
     manifest, bounds = golden.manifest, golden.manifest.bounds
     behind = [MEANING[manifest.level]]
     if manifest.enclosure is not None:
@@ -102,7 +102,7 @@ def certificate(golden: Golden) -> Mapping[str, str]:
 
 
 def dataset(golden: Golden, base: str) -> Html:
-    """Return all that is to be said of a dataset: its certificate, and its files with sizes and hashes."""
+    """Return the description of a dataset: its certificate, and its files with sizes and hashes."""
     rows = [
         (linked(golden, name, base), f"{record.bytes:,}", record.sha256)
         for name, record in golden.manifest.files.items()
@@ -112,20 +112,20 @@ def dataset(golden: Golden, base: str) -> Html:
 
 
 def linked(golden: Golden, name: str, base: str) -> Html:
-    """Return the name of a file, linked to where the files stand, if that is known."""
+    """Return the name of a file, linked to its location if that is known."""
     target = f"{base.rstrip('/')}/{golden.manifest.id}/{name}"
     return Html(f'<a href="{text(target)}">{text(name)}</a>') if base else text(name)
 
 
 def inputs(golden: Golden) -> Html:
-    """Return the scene's inputs as they stand in the manifest."""
+    """Return the scene's inputs as in the manifest."""
     return facts(
         by_field({name: table for name, table in golden.manifest.scene.items() if name != "run"})
     )
 
 
 def methods(studied: StudyResults) -> list[Html]:
-    """Return tables of how methods fared, as far as studies are kept: none, one or two."""
+    """Return tables of the results of methods, from the studies that are kept: none, one or two."""
     parts = []
     if studied.same_digits:
         parts.append(_same_digits(studied.same_digits))
@@ -249,7 +249,7 @@ def plain(value: object) -> Any:
         return value.pattern
     if isinstance(value, Deviation):
         return value.text
-    raise TypeError(f"{value!r} has no form in JSON")
+    raise TypeError(f"{value!r} cannot be written as JSON")
 
 
 def _doubles(values: Array) -> str:

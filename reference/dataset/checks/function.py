@@ -20,7 +20,7 @@ _RANDOM_TIMES = 2
 
 
 def problems(files: DatasetFiles) -> Iterator[str]:
-    """Yield what does not follow from manifest and scene, or contradicts a row of the grid."""
+    """Yield a sentence for everything that does not follow from manifest and scene, or contradicts the grid."""
     if files.function is None:
         return
     record, function = files.function

@@ -64,7 +64,7 @@ class _Comparison:
 
 
 def problems(files: DatasetFiles, report: Progress | None = None) -> tuple[list[str], list[str]]:
-    """Return a sentence for every number that the motion contradicts, and what was not decided."""
+    """Return a sentence for every number that the motion contradicts, and what could not be decided."""
     if not engines()["limbs"].installed:
         return [], _undecided(
             "integrating it again needs numba: pip install 'foucault-reference[fast]'"
@@ -90,7 +90,7 @@ def problems(files: DatasetFiles, report: Progress | None = None) -> tuple[list[
             most_s = _PATIENCE * allowed_s
     except UnreachableError as error:
         return [], _undecided(str(error))
-    return [], _undecided(f"two runs in up to {MOST_PREC} bits are further apart than the bounds")
+    return [], _undecided(f"two runs in up to {MOST_PREC} bits differ by more than the bounds")
 
 
 def _undecided(reason: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Check each row by itself: sphere, velocity along it, invariant, acceleration at a transit.
+"""Check each row by itself: position on the sphere, velocity tangent to it, invariant, acceleration at a transit.
 
 How far a checked quantity may be off follows from the bounds of the columns, by differences of the
 quantity itself.
@@ -43,7 +43,7 @@ _ROW_WORDS: dict[Kind, tuple[str, int]] = {
 
 
 def problems(files: DatasetFiles) -> Iterator[str]:
-    """Yield every row that breaks a law which holds at each moment."""
+    """Yield a sentence for every row that breaks a law of the motion."""
     kinds: tuple[Kind, ...] = ("grid", "sections", "transits")
     tables = []
     for kind in kinds:

@@ -1,4 +1,4 @@
-"""Read vectors and page back, and compare what they say with tables and manifest.
+"""Read vectors and page back, and compare them with tables and manifest.
 
 Nothing here is used to write a dataset: a mistake of what writes these files does not hide in what
 checks them.
@@ -40,7 +40,7 @@ _SAME = ("schema_version", "id", "level", "digits", "inputs", "frame", "scene")
 
 
 def problems(files: DatasetFiles) -> Iterator[str]:
-    """Yield what vectors and page say that tables and manifest do not."""
+    """Yield a sentence for every difference between vectors or page and tables or manifest."""
     if _VECTORS in files.texts:
         try:
             yield from _vectors(files, json.loads(files.texts[_VECTORS]))

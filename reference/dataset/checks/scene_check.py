@@ -31,7 +31,7 @@ _HALF = Fraction(1, 2)
 
 
 def table_problems(files: DatasetFiles) -> Iterator[str]:
-    """Yield what is wrong with the rows of the tables, by themselves and against the scene."""
+    """Yield a sentence for every problem of the tables, by themselves or with the scene."""
     yield from _times(files)
     yield from _release(files)
     yield from _digits(files)
@@ -178,7 +178,7 @@ def _bound_column(files: DatasetFiles, transits: Sheet) -> Iterator[str]:
 
 
 def largest_jerk(files: DatasetFiles) -> Fraction:
-    """Return a bound on the rate of xddot, in m/s³; where ax is small against it, a zero may graze.
+    """Return a bound on the rate of xddot in m/s³; where ax is small compared with it, xdot may only touch zero.
 
     With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at
     the release and drag can only lower, it is 8 l (p + v² + w²) (v + w).
@@ -193,11 +193,11 @@ def largest_jerk(files: DatasetFiles) -> Fraction:
 
 
 def problems(files: DatasetFiles) -> Iterator[str]:
-    """Yield what in manifest, page and vectors does not follow from the scene and the tables."""
+    """Yield a sentence for everything in manifest, page and vectors that does not follow from scene and tables."""
     manifest = files.manifest
     formulation = manifest.run.formulation
     if formulation not in FORMULATIONS:
-        yield f"{MANIFEST}: run.formulation = {formulation} is none"
+        yield f"{MANIFEST}: run.formulation = {formulation} is not a formulation"
         return
     expected = _expected(files)
     for place, *values in differences(manifest.model_dump(), expected.model_dump()):
@@ -386,7 +386,7 @@ def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
         gap = getattr(check, name)
         bound = getattr(manifest.bounds, name)
         if gap is not None and bound and Fraction(gap) > Fraction(bound):
-            yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
+            yield f"{MANIFEST}: cross_checks: the runs differ by {gap}, more than bounds.{name} = {bound}"
 
 
 def _derived(files: DatasetFiles) -> Iterator[str]:

@@ -11,7 +11,7 @@ _MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
 
 
 class HeyokaBatch(Batch):
-    """A loop over the rows in `momentum`: events find zeros, a pass gives the states there."""
+    """heyoka for many rows, one at a time, in the formulation `momentum`; event detection finds the zeros."""
 
     name = "heyoka"
     requires = ("heyoka",)

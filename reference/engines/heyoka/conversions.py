@@ -71,7 +71,7 @@ class Numbers:
         return self.of(Fraction(2) ** exponent)
 
     def fixed(self, values: Any, bits: int) -> list[int]:
-        """Return each number of an array as an integer over 2**bits, cut off towards zero."""
+        """Return each number of an array as an integer over 2**bits, truncated towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
     def integrator(
@@ -105,7 +105,7 @@ class Numbers:
         grid = np.array(times, dtype=self.dtype)
         outcome, _, _, steps, _, states = integrator.propagate_grid(grid, **options)
         if outcome == hy.taylor_outcome.err_nf_state or not np.isfinite(states.astype(float)).all():
-            raise IntegrationError("the state became infinite or not a number.")
+            raise IntegrationError("the state became infinite or NaN.")
         if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
             reached = f"{float(integrator.time)} s, after {steps} steps"
             raise IntegrationError(f"heyoka stopped at t = {reached}, with outcome {outcome}.")

@@ -1,4 +1,4 @@
-"""Transits by heyoka: guards around its event detection, which have ../passages.py count zeros that are close.
+"""Transits by heyoka: guards around its event detection; ../passages.py counts zeros that lie close together.
 
 So no zero of xdot is lost and none counted twice.
 
@@ -87,7 +87,7 @@ def _quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
         weight = stepper.numbers.power_of_two(-halvings)
         if head > 2 * sum((b * weight ** (j + 1) for j, b in enumerate(tail)), start=0 * head):
             return Fraction(float(h)) / Fraction(2) ** halvings
-    raise IntegrationError("xdot does not leave zero at t = 0 in the working precision.", AT_REST)
+    raise IntegrationError("within the working precision, xdot stays zero after t = 0.", AT_REST)
 
 
 def march(

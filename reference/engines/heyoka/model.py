@@ -78,7 +78,7 @@ class RoundedModel:
         return np.array(columns).T.copy()
 
     def table(self, states: Any, bits: int) -> Table:
-        """Return `columns.RUN` over 2**bits, exactly as computed.
+        """Return position, velocity and xddot as a table of integers over 2**bits, exactly as computed.
 
         `states` has the shape (rows, variables).
         """

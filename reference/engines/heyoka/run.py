@@ -1,4 +1,4 @@
-"""One run of heyoka: a scene in one formulation and one number type, with its transits if wanted.
+"""One run of heyoka: a scene in one formulation and one number type, optionally with its transits.
 
 For a proof: the Taylor steps of a run in `momentum`, their lengths and coefficients as integers.
 """

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import heyoka as hy
 
-from ...errors import InputError
+from ...errors import Described, InputError, counted
 from ...model.algebra import minus, product
 from ...model.carried import constant_variables
 from ...model.constants import Constants
@@ -32,7 +32,7 @@ _EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
 
 
 def keep_on_disk(number: NumberType) -> None:
-    """Have what is compiled from now on kept on disk, where that serves for numbers of this type.
+    """Keep on disk the code compiled from now on, if that helps for numbers of this type.
 
     Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it
     is switched off.
@@ -93,7 +93,9 @@ def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]
         raise InputError("derivatives", rates, "a list of rates, numbers or expressions") from None
     if len(expressions) != len(state):
         raise InputError(
-            "derivatives", f"{len(expressions)} rates", f"{len(state)}, one a variable"
+            "derivatives",
+            Described(counted(len(expressions), "rate")),
+            f"{len(state)}, one for each variable",
         )
     return [*zip(state, expressions, strict=True)]
 

@@ -72,7 +72,7 @@ class Integration:
                 "precision",
                 prec,
                 f"at most {MOST_PREC} bits",
-                "Use the engine heyoka for more digits.",
+                "For more digits use the engine heyoka.",
             )
         self.problem = limb_problem(plan.inputs, prec, order, plan.other_steps)
         start = self.problem.start
@@ -111,10 +111,10 @@ class Integration:
         outcome = march(*self._arguments(steps))
         self._keep_zeros()
         if outcome == STUCK:
-            raise IntegrationError(f"no step is short enough at t = {self.time} s.")
+            raise IntegrationError(f"even the shortest step is too long at t = {self.time} s.")
         if outcome == DOUBTFUL:
             raise IntegrationError(
-                f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.",
+                f"near t = {self.time} s, this precision cannot tell whether xdot crosses zero or touches it.",
                 AT_REST,
             )
         return bool(outcome == GOOD)

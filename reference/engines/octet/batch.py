@@ -51,7 +51,7 @@ class OctetBatch(Batch):
         from .march import RowData, empty_march, empty_moments, march
 
         if rows.drag.any():
-            raise ValueError("rows with drag are not for this kernel")
+            raise ValueError("this kernel cannot solve rows with drag")
         numbers = packed(rows, options)
         results = np.zeros((len(rows), RESULTS))
         moments = empty_moments(_ROOM if options.times else 0)

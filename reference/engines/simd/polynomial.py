@@ -14,7 +14,7 @@ FREE, MONOTONE, CONVEX, UNDECIDED = range(4)
 
 
 class Behaviour(NamedTuple):
-    """A polynomial on an interval.
+    """How a polynomial behaves on an interval.
 
     Attributes:
         kind: FREE, MONOTONE, CONVEX or UNDECIDED.

@@ -73,7 +73,7 @@ def test_lines_above_the_header_do_no_harm():
     ]
     found = read_stream(text(*lines), "run")
     assert (found.columns["x"][0], found.columns["y"][0]) == (0.3, 0.4)
-    with pytest.raises(InputError, match="a row of numbers before it"):
+    with pytest.raises(InputError, match="a row of numbers on an earlier line"):
         read_stream(text(*["nothing here"] * 1100), "run")
 
 
@@ -108,7 +108,7 @@ def test_columns_named_by_the_user(tmp_path):
     ("columns", "message"),
     [
         (["t", "x"], "a name for each of the 3 columns"),
-        (["t", "x", "wind"], "got 'wind', expected names of t, x, y, z"),
+        (["t", "x", "wind"], "got 'wind', expected names among t, x, y, z"),
         (["t", "x", "-"], "no y in t, x, -"),
         (["t", "x", "x"], "one column x"),
     ],
@@ -139,7 +139,7 @@ def test_units_of_the_user_hold_where_the_header_names_none():
         text("t,x,y,vx", "2000,30,40,5"), "run", naming=Naming((), ("milliseconds", "cm"))
     )
     assert (found.t[0], found.columns["x"][0], found.columns["vx"][0]) == (2.0, 0.3, 0.05)
-    with pytest.raises(InputError, match="no other unit of t than min"):
+    with pytest.raises(InputError, match="expected min, the unit of t in the header"):
         read_stream(text("t (min),x,y", "2,30,40"), "run", naming=Naming((), ("ms",)))
 
 

@@ -197,13 +197,13 @@ def test_commands_are_compared_too(foucault, rows):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("[]", "a JSON document of keys and values"),
-        ("{}", "a document of `foucault score --json`"),
-        ('{"scene": "mine"}', "a document of `foucault score --json`"),
-        ('{"rows": [7]}', "a document of `foucault score --json`"),
-        ("other", "Judge both by the same inputs"),
-        ("changed", "Judge both by the same inputs"),
-        ("words", "a document of `foucault score --json`"),
+        ("[]", "a JSON object of keys and values"),
+        ("{}", "a document that `foucault score --json` wrote"),
+        ('{"scene": "mine"}', "a document that `foucault score --json` wrote"),
+        ('{"rows": [7]}', "a document that `foucault score --json` wrote"),
+        ("other", "Score both with the same inputs"),
+        ("changed", "Score both with the same inputs"),
+        ("words", "a document that `foucault score --json` wrote"),
     ],
 )
 def test_what_is_no_baseline_is_refused(foucault, rows, tmp_path, text, said):
@@ -271,9 +271,7 @@ def test_a_suite_is_compared_with_an_earlier_one(foucault, suites, kind):
     jsonschema.validate(document, SCHEMA)
     told = {row["scene"]: row for row in document["rows"]}
     assert told["lost"]["verdict"] == "refused" and "no file for lost" in told["lost"]["error"]
-    assert (
-        told["new"]["baseline"] is None and "this verdict stands alone" in told["new"]["notes"][0]
-    )
+    assert told["new"]["baseline"] is None and "nothing is compared" in told["new"]["notes"][0]
     before = suites / "old/same.csv" if kind == "folder" else baseline
     assert told["same"]["baseline"]["text"].startswith(f"Since {before}: ")
     assert (

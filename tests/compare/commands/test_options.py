@@ -41,19 +41,19 @@ REFUSED = [
     (
         (*STUDY, "--settings", "0.1", "--run", "./p"),
         "--settings",
-        "with a --run that has no {setting}",
+        "without {setting} in --run",
     ),
     ((*STUDY, "--name", "mine"), "--name", "without --run"),
     (
         (*STUDY, "--run", "./p", "--run", "./q", "--name", "p"),
         "--name",
-        "one name for each --run, so 2",
+        "2 names, one for each --run",
     ),
-    ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name that a method does not have"),
+    ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name other than that of a method"),
     (
         (*STUDY, "--run", "./p 1", "--run", "./p 2"),
         "--name",
-        "a name that another --run does not have",
+        "a name other than that of another --run",
     ),
     ((*STUDY, "--run", "./p", "--name", "x" * 25), "--name", "1 to 24 printable characters"),
     ((*STUDY, "--run", "./p {nonsense}"), "--run", "{x0}"),
@@ -87,7 +87,11 @@ REFUSED = [
         "together with --set inputs=binary64",
     ),
     ((*SCORE, "--inputs", "floats"), "--inputs", "expected auto, decimal or binary64"),
-    ((*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"), "--set", "x0=0.1 stands before it"),
+    (
+        (*SCORE, "--set", "x0=0.1", "--set", "release.x=0.2"),
+        "--set",
+        "--set x0=0.1 is given as well",
+    ),
     ((*SCORE, "--t-end", "10", "--set", "t_end=20"), "--t-end", "together with --set t_end=20"),
     ((*SCORE, "--set", "z0=-3"), "z0", "a field that scenes have"),
     ((*GENERATE, *LATE), "--t-end", "together with --set run.t_end=20"),
@@ -101,7 +105,7 @@ REFUSED = [
     (
         (*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"),
         "--set",
-        "run.digits=9 stands before it",
+        "--set run.digits=9 is given as well",
     ),
     ((*GENERATE, "--level", "confimed"), "--level", "Did you mean confirmed?"),
     ((*GENERATE, "--engine", "limb"), "--engine", "Did you mean limbs?"),
@@ -111,7 +115,7 @@ REFUSED = [
     (
         ("score", "paris", "--approximation", "precession_sine"),
         "--approximation",
-        "a number, not a motion",
+        "gives a single number",
     ),
     (("stability", "--methods", "nothing_like_it"), "method", "`foucault methods` lists them"),
     (
@@ -135,7 +139,7 @@ def test_what_would_have_no_effect_is_refused(
     monkeypatch.chdir(tmp_path)
     status, out, err = foucault(*words)
     assert (status, out) == (2, "")
-    assert err.startswith(f"foucault: {field}: got ")
+    assert err.startswith(f"foucault: {field}: ")
     assert reason in err
     assert len(err) < 500
     assert list(tmp_path.iterdir()) == []

@@ -160,10 +160,10 @@ def test_two_lines_that_coincide_are_both_seen(score, tmp_path):
     [
         (("pariss",), "Did you mean paris?"),
         (("paris", "--what", "spere"), "Did you mean sphere?"),
-        (("paris", "--what", "sphere"), "what there is of paris: path, plane or transits"),
-        (("paris", "--out", "nowhere/x.svg"), "a file in a folder that exists"),
-        (("paris", "--out", "x.gif"), "a path that ends in .svg, .png, .pdf"),
-        (("mine.csv", "--t-end", "3"), "no such option for a file"),
+        (("paris", "--what", "sphere"), "a picture of paris: path, plane or transits"),
+        (("paris", "--out", "nowhere/x.svg"), "a path in an existing folder"),
+        (("paris", "--out", "x.gif"), "a path that ends in .svg, .png or .pdf"),
+        (("mine.csv", "--t-end", "3"), "has no effect for a file"),
         (("mine.csv",), "mine.csv: line 2"),
     ],
 )

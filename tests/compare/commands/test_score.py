@@ -61,7 +61,7 @@ def test_an_end_before_the_first_row_is_refused(foucault, tmp_path):
     (tmp_path / "mine.csv").write_text("t,x,y\n120,0.1,0.1\n")
     status, out, err = foucault("score", "paris", tmp_path / "mine.csv", "--t-end", "60")
     assert (status, out) == (2, "")
-    assert "t_end: got '60', expected a time from the first row on, which is at t = 120 s" in err
+    assert "t_end: got '60', expected at least 120 s" in err
 
 
 def test_an_approximation_is_compared_up_to_there(foucault):
@@ -101,7 +101,7 @@ def test_stdout_of_a_program_that_diverges_is_one_json_document(foucault, tmp_pa
     assert document["verdict"] == "disagrees" and document["causes"] == []
     (tmp_path / "nan.csv").write_text("t,x,y\n0,0.3,0.4\n1,inf,nan\n")
     status, out, err = foucault("score", "paris", tmp_path / "nan.csv", "--json")
-    assert (status, out) == (2, "") and "nan.csv: x: got 'inf in row 2'" in err
+    assert (status, out) == (2, "") and "nan.csv: x: got inf in row 2" in err
 
 
 def test_fields_have_the_short_names_of_run_and_one_without_effect_is_a_note(foucault):
@@ -123,7 +123,7 @@ def test_fields_have_the_short_names_of_run_and_one_without_effect_is_a_note(fou
         "level=enclosed",
     )
     assert ignored[:2] == long[:2]
-    assert ignored[2] == "--set level=enclosed makes no difference here. " + (
+    assert ignored[2] == "--set level=enclosed has no effect here. " + (
         "A candidate is held against a confirmed solution, or a dataset that ships.\n"
     )
     assert load_scene("paris", ["x0=0.2", "length=60"]) == load_scene(

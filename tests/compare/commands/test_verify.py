@@ -83,7 +83,7 @@ def test_a_damaged_part_and_one_that_does_not_belong_are_told(foucault, swept):
     (row,) = json.loads(out)["rows"]
     (problem,) = row["problems"]
     assert status == 1 and problem.startswith(
-        "rows/part-00000001.parquet is no part of this sweep: remove it"
+        "rows/part-00000001.parquet is not a part of this sweep: remove it"
     )
     data = bytearray(part.read_bytes())
     data[len(data) // 2] ^= 1

@@ -102,7 +102,7 @@ def test_a_program_is_compiled_once_and_serves_scenes_with_the_same_terms(here, 
 def test_what_does_not_compile_is_said_in_the_compilers_words(here, tmp_path):
     wrong = tmp_path / "wrong.cpp"
     wrong.write_text("static void integrate(Run &) { no_such_thing(); }\n")
-    with pytest.raises(IntegrationError, match=r"Own does not compile here.*no_such_thing"):
+    with pytest.raises(IntegrationError, match=r"cannot compile .* Own: .*no_such_thing"):
         c_libraries.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(wrong)])
 
 

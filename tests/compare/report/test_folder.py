@@ -44,7 +44,8 @@ def test_a_file_of_somebody_elses_is_not_replaced(tmp_path: Path, name: str) -> 
     (tmp_path / name).write_text("ten years of work")
     for refused in (write_files, check_folder):
         with pytest.raises(
-            InputError, match=f"--out: got .*, expected a new folder.* It has a {name} of its own"
+            InputError,
+            match=f"--out: got .*, expected a new folder.* It contains a {name} that no run wrote",
         ):
             refused(tmp_path, FILES)
     assert contents(tmp_path) == {name: "ten years of work"}

@@ -67,5 +67,5 @@ def test_what_is_missed_extra_or_another_section_is_told():
         other.verdict == "disagrees"
         and len(other.errors.shifted(other.allowed_m)) == other.errors.matched
     )
-    with pytest.raises(InputError, match="no time in the scene's span"):
+    with pytest.raises(InputError, match="no time within the scene's span"):
         scored("none", np.array([31.0]), scene, "gate 30")

@@ -164,9 +164,7 @@ def test_inputs_that_are_doubles_have_no_floor_to_compare_with(tmp_path, monkeyp
     third = np.ones(1, np.longdouble) / 3  # so that it is judged by a dataset
     score = judge({"t": [5.0], "x": third, "y": third}, scene, explain=False)
     assert document(score)["error_over_floor"] is None
-    assert "the inputs are doubles as they stand" in line_of(
-        str(score).splitlines(), "largest error"
-    )
+    assert "the inputs are exact doubles" in line_of(str(score).splitlines(), "largest error")
 
 
 def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():

@@ -44,7 +44,7 @@ def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
     "runs", [lambda: study("paris", []), lambda: declared([], "stability"), lambda: plan(PARIS, ())]
 )
 def test_no_methods_are_not_all_of_them(runs):
-    with pytest.raises(InputError, match="got 'no id', expected a method that can run here"):
+    with pytest.raises(InputError, match="got no id, expected a method that can run here"):
         runs()
 
 

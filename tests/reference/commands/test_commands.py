@@ -68,7 +68,7 @@ def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is
         "reason": "its last swing is less than 16 times as wide as the rest position is off the plumb line"
     }
     short = foucault("show", "paris", "--set", "run.t_end=10")[1]
-    assert "or the run ends before" in unwrapped(short)
+    assert "or the run is too short" in unwrapped(short)
     motion = json.loads(foucault("show", "damped", "--set", "run.t_end=120", "--json")[1])["motion"]
     assert motion["full_turn_h"] == pytest.approx(31.7, rel=0.05)
     assert {"period_s", "period_error_s", "over_s", "left_out"} == {
@@ -135,7 +135,7 @@ def test_a_bob_that_goes_over_the_top_has_no_period_and_the_proof_says_the_same(
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        (("paris", "--set", "run.t_end=10"), "the run ends before"),
+        (("paris", "--set", "run.t_end=10"), "the run is too short"),
         (("nanometre_paris", "--set", "run.t_end=60"), "less than 16 times as wide"),
         (("conical", "--set", "run.t_end=10"), "not decided which of its points are the highest"),
     ],
@@ -302,8 +302,8 @@ BAD = [
     (("generate", "paris", "--set", "release.x=70"), "release", "below the suspension"),
     (("generate", "paris", "--set", "site.colour=blue"), "site.colour", "a field that scenes have"),
     (("generate", "paris", "--set", "id=a/b"), "id", "lower-case"),
-    (("generate", "paris", "--set", "nonsense"), "--set", "section.key=value"),
-    (("generate", "paris", "--out", "/proc/nowhere/x"), "--out", "writable"),
+    (("generate", "paris", "--set", "nonsense"), "--set", "SECTION.KEY=VALUE"),
+    (("generate", "paris", "--out", "/proc/nowhere/x"), "--out", "can be written to"),
     (("show", "/nowhere/at/all.toml"), "SCENE", "TOML file"),
     (("verify", "/nowhere/at/all"), "PATH", "golden dataset"),
 ]

@@ -57,7 +57,7 @@ def test_values_are_named_as_a_user_types_them():
 
 def test_an_option_without_effect_is_refused_by_its_word_and_the_case():
     refuse_conflicts(Options("paris", "a.out", 3.0), CONFLICTS)
-    with pytest.raises(InputError, match=r"--timeout: got '3.0'.*without --run"):
+    with pytest.raises(InputError, match=r"--timeout: has no effect without --run"):
         refuse_conflicts(Options("paris", None, 3.0), CONFLICTS)
     with pytest.raises(InputError, match=r"--no-audit"):
         refuse_conflicts(Options("paris", audit=False), CONFLICTS)
@@ -79,5 +79,5 @@ def test_a_field_without_a_default_is_required():
 
 def test_an_option_at_its_default_changes_nothing_and_is_not_refused():
     refuse_conflicts(Options("paris", reading="auto"), CONFLICTS)
-    with pytest.raises(InputError, match=r"--reading: got 'binary64'.*without --run"):
+    with pytest.raises(InputError, match=r"--reading: has no effect without --run"):
         refuse_conflicts(Options("paris", reading="binary64"), CONFLICTS)

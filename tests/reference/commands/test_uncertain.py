@@ -61,11 +61,11 @@ def test_show_tells_period_and_first_transits():
             2,
             "expected one width of length",
         ),
-        ([*BOX, "--level", "confirmed"], 2, "enclosed, together with uncertain"),
-        ([*BOX, "--digits", "20"], 2, "no such option where inputs are uncertain"),
-        ([*BOX, "--function"], 2, "no such option where inputs are uncertain"),
+        ([*BOX, "--level", "confirmed"], 2, "enclosed, because inputs are uncertain"),
+        ([*BOX, "--digits", "20"], 2, "has no effect while inputs are uncertain"),
+        ([*BOX, "--function"], 2, "has no effect while inputs are uncertain"),
         ([*BOX, "--all"], 2, "with --all"),
-        (["--uncertain", "x0=±3"], 3, "too wide: it holds up to t ="),
+        (["--uncertain", "x0=±3"], 3, "too uncertain: the proof reaches only t ="),
     ],
 )
 def test_what_is_wrong_is_told_and_nothing_is_written(tmp_path, words, status, told):

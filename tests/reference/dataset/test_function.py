@@ -137,8 +137,8 @@ def test_a_function_needs_a_proof():
         (lambda said: said["times"].__setitem__(-1, (299.0).hex()), "ends at 299 s, not at 300 s"),
         (lambda said: said["times"].__setitem__(5, said["times"][7]), "times must increase"),
         (lambda said: said["times"].__setitem__(0, (1.0).hex()), "times: must increase from 0"),
-        (lambda said: said["times"].pop(), "function.f64 has another size"),
-        (lambda said: said.update(degree=20), "function.f64 has another size"),
+        (lambda said: said["times"].pop(), "function.f64 has the wrong size"),
+        (lambda said: said.update(degree=20), "function.f64 has the wrong size"),
         (lambda said: said.update(components=["x", "z"]), "components: must be"),
         (lambda said: said.update(length_squared=None), "components: must be"),
         (lambda said: said["bounds"].pop("vx"), "bounds: must name"),
@@ -318,7 +318,7 @@ def test_a_function_alone_is_a_dataset_with_the_same_motion_and_transits(
     [
         (
             lambda said: said["counts"].update(transits=35),
-            "xdot has 36 zeros, the manifest counts 35",
+            "xdot has 36 zeros, but the manifest says 35",
         ),
         (
             lambda said: said.update(command=said["command"].replace(" --no-tables", "")),

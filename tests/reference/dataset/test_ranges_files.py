@@ -92,7 +92,7 @@ def test_ranges_replace_ranges_and_nothing_else(ranges, tmp_path):
 
 def test_an_end_that_is_rounded_inward_is_not_written(ranges, tmp_path):
     lying = loaded(named("reference/dataset/ranges.py ends, flip sign: -1"))
-    with pytest.raises(reference.DatasetError, match="does not hold what is proved"):
+    with pytest.raises(reference.DatasetError, match="do not contain the proven ones"):
         lying.write_ranges(ranges, tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
 
@@ -179,7 +179,7 @@ def test_verify_finds_what_is_not_proved_even_if_it_is_sealed_anew(ranges, tmp_p
         said["seal"] = seal_of(said)
     (folder / "ranges.json").write_text(text_of(said), encoding="utf-8")
     problems = verify_ranges(folder)
-    assert problems and ("does not hold what is proved" in problems[0]) is sealed
+    assert problems and ("do not contain the proven ones" in problems[0]) is sealed
     if not sealed:
         with pytest.raises(reference.DatasetError, match=r"seal|sha256"):
             reference.load_ranges(folder)
@@ -244,7 +244,7 @@ def test_verify_finds_tables_with_other_ends_of_lines(ranges, tmp_path, file, sp
         handle.write(text.encode())
     assert "a byte was changed" in verify_ranges(folder)[0]
     sealed_anew(folder, lambda said: None)
-    assert "does not hold what is proved" in verify_ranges(folder)[0]
+    assert "do not contain the proven ones" in verify_ranges(folder)[0]
 
 
 @pytest.mark.parametrize("name", ["grid.csv", "transits.csv", "ranges.json"])

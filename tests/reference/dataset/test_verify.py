@@ -157,13 +157,13 @@ WORDS = {
     "an id with a change that is none": (lambda m: m.update(id="paris+release.x=0.3"), "id = paris+release.x=0.3 does"),
     "a scene without its site": (lambda m: m["scene"].pop("site"), "scene.site = None does not follow"),
     "another id": (lambda m: m.update(id="paris+site.latitude=0"), "id = paris+site.latitude=0 does not follow"),
-    "another formulation": (lambda m: m["run"].update(formulation="guess"), "run.formulation = guess is none"),
+    "another formulation": (lambda m: m["run"].update(formulation="guess"), "guess is not a formulation"),
     "a check in no formulation": (
         lambda m: m["cross_checks"][0].update(formulation="guess"), "guess is no formulation"),
     "a check in the same formulation": (
         lambda m: m["cross_checks"][0].update(formulation=m["run"]["formulation"]), "no cross-check is in another"),
     "runs that do not agree": (
-        lambda m: m["cross_checks"][0].update(position_m="1.0e-10"), "the runs are 1.0e-10 apart"),
+        lambda m: m["cross_checks"][0].update(position_m="1.0e-10"), "the runs differ by 1.0e-10"),
     "a smaller bound": (lambda m: m["bounds"]["grid"].update(x="1.0e-25"), "is not from half a unit to one"),
     "a smaller largest bound": (
         lambda m: m["bounds"].update(position_m=m["bounds"]["grid"]["x"]), "bounds.position_m = "),
@@ -187,7 +187,7 @@ WORDS = {
     "transits of a scene that asks for none": (
         lambda m: (m["scene"]["run"].update(transits="false"), m.update(transits="not asked for")),
         "counts.transits = 36 does not follow from the scene and the tables, which give 0"),
-    "a wrong count": (lambda m: m["counts"].update(transits=35), "36 rows, the manifest counts 35"),
+    "a wrong count": (lambda m: m["counts"].update(transits=35), "36 rows, but the manifest says 35"),
     "intervals that overlap": (lambda m: possible(m, (10, 20), (19, 30)), "must be intervals in order"),
     "an interval that ends before it begins": (lambda m: possible(m, (20, 10)), "must be intervals in order"),
     "an interval without length": (lambda m: possible(m, (20, 20)), "must be intervals in order"),

@@ -62,7 +62,7 @@ def test_columns_are_taken_by_name_whatever_their_order():
     assert (one.whole("y", 8), one.whole("y", 11)) == ([2, 4], [16, 32])
     assert len(one) == 2
     assert one.largest_bounds() == {"x": Fraction(7, 256), "y": Fraction(8, 256)}
-    with pytest.raises(KeyError, match="'z' is no column; there are x, y"):
+    with pytest.raises(KeyError, match="no column 'z'; the columns are x, y"):
         one.exact("z")
 
 

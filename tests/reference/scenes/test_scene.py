@@ -167,9 +167,9 @@ def test_bad_input_names_the_field_and_what_was_expected(sections, field, expect
 
 # as decimals in range, as doubles not: too large, rounded to 0, rounded onto an end that is excluded
 NOT_AS_DOUBLES = [
-    ("site.gravity=1e400", "at most 1.8e+308 in size"),
-    ("site.altitude=-1e309", "at most 1.8e+308 in size"),
-    ("site.inverse_flattening=1e399", "at most 1.8e+308 in size"),
+    ("site.gravity=1e400", "of absolute value at most 1.8e+308"),
+    ("site.altitude=-1e309", "of absolute value at most 1.8e+308"),
+    ("site.inverse_flattening=1e399", "of absolute value at most 1.8e+308"),
     ("site.inverse_flattening=1.0000000000000000000001", "above 1"),
     ("pendulum.length=1e-350", "above 0"),
     ("run.grid_step=1e-350", "above 0"),
@@ -195,7 +195,7 @@ def test_commands_that_read_doubles_name_the_field_too(foucault, tmp_path, comma
 
 
 def test_a_missing_id_is_asked_for():
-    with pytest.raises(InputError, match="id: got 'nothing'"):
+    with pytest.raises(InputError, match="id: got nothing"):
         parse_scene({"release": {"x": "0", "y": "0"}})
 
 

@@ -267,7 +267,7 @@ def test_a_state_outside_its_ball_names_time_and_component(engine, shift):
 
 
 def test_a_transit_that_heyoka_does_not_see_is_named():
-    with pytest.raises(IntegrationError, match="heyoka finds 14 transits, the enclosure 13"):
+    with pytest.raises(IntegrationError, match="heyoka finds 14 transits, but the proof finds 13"):
         solved_with(
             lambda proved: with_transits(proved, proved.zeros["xdot"][:-1]), make_scene(run=SHORT)
         )
@@ -280,7 +280,7 @@ def test_a_transit_that_heyoka_sees_elsewhere_is_named():
         transits[4] = replace(transits[4], t=replace(t, low=t.low + 1, high=t.high + 1))
         return with_transits(proved, transits)
 
-    with pytest.raises(IntegrationError, match="does not find transit 5 of the enclosure, at t = "):
+    with pytest.raises(IntegrationError, match="does not find transit 5 of the proof, at t = "):
         solved_with(shift, make_scene(run=SHORT))
 
 

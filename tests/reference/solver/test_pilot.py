@@ -62,7 +62,7 @@ def test_strong_drag_forgets_the_release():
 @pytest.mark.long
 def test_growth_faster_than_any_precision_is_refused_from_the_first_runs():
     scene = load_scene("separatrix", ["run.t_end=1500", "run.grid_step=0.5"])
-    with pytest.raises(UnreachableError, match=r"to the end it takes about (\d+) bits") as caught:
+    with pytest.raises(UnreachableError, match=r"to the end would need about (\d+) bits") as caught:
         run_pilot(scene.exact, tuple(scene.exact.grid))
     bits = int(re.findall(r"(\d+) bits", caught.value.reason)[0])
     needed = 1500 * 3 / math.log(2)
@@ -180,7 +180,9 @@ def test_effort_counts_steps_at_160_bits_and_grows_with_the_cube():
 
 @pytest.mark.parametrize("level", ["computed", "confirmed"])
 def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(paris, level):
-    with pytest.raises(UnreachableError, match=r"1000 digits take \d+ bits over about \d+ steps"):
+    with pytest.raises(
+        UnreachableError, match=r"1000 digits would need \d+ bits and about \d+ steps"
+    ):
         reference.solve(paris, t_end="10000", digits=1000, level=level)
 
 

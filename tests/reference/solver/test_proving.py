@@ -89,7 +89,7 @@ def test_zeros_in_another_order_are_refused(proved, pilot, word, name):
 @KINDS
 def test_a_zero_that_is_missing_is_refused_unless_some_are_undecided(proved, pilot, word, name):
     fewer = without(proved, word, 2)
-    with pytest.raises(IntegrationError, match=f"finds 7 {name}s, the enclosure 6"):
+    with pytest.raises(IntegrationError, match=f"finds 7 {name}s, but the proof finds 6"):
         guarded(fewer, pilot)
     t = proved.zeros[word].table.exact("t")[2]
     undecided = changed(fewer, word, possible=((t - 1, t + 1, "odd"),))

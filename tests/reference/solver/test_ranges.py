@@ -133,7 +133,7 @@ def test_a_wrong_width_is_told(uncertain, told):
 def test_a_box_too_wide_is_refused_with_the_time_up_to_which_it_holds():
     wide = {"pendulum.length": "±0.001", "release.x": "±2"}
     with pytest.raises(
-        reference.UnreachableError, match=r"too wide: it holds up to t = (\d+)"
+        reference.UnreachableError, match=r"too uncertain: the proof reaches only t = (\d+)"
     ) as caught:
         reference.prove_ranges("paris", t_end="3600", widths=wide)
     holds = str(caught.value).partition("t = ")[2].partition(" ")[0]
@@ -146,7 +146,9 @@ def test_a_box_without_a_pull_is_refused():
         "site": {"gravity": "0", "rotation_rate": "0"},
         "release": {"x": "1", "y": "0", "vx": "1"},
     }
-    with pytest.raises(reference.UnreachableError, match="too wide: it holds up to t = 0"):
+    with pytest.raises(
+        reference.UnreachableError, match="too uncertain: the proof reaches only t = 0"
+    ):
         reference.prove_ranges(floating, t_end="10", widths={"length": "±0.001"})
 
 

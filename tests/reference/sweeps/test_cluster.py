@@ -104,7 +104,7 @@ def test_if_the_scheduler_is_lost_what_is_done_stays_and_the_same_command_goes_o
             if rows:
                 lost.close()
 
-        with pytest.raises(ClusterError, match="the same command goes on"):
+        with pytest.raises(ClusterError, match="the same command resumes"):
             run(asked(folder), folder, cluster=lost.scheduler_address, report=report)
     done = len(list((folder / "rows").glob("part-*")))
     assert done > 0
@@ -222,7 +222,7 @@ def test_a_cluster_that_is_started_here_leaves_nothing_behind_and_tls_is_dasks_o
     assert not list(scratch.iterdir())
     with (
         dask.config.set(encrypted),
-        pytest.raises(InputError, match="processes that dask can start here"),
+        pytest.raises(InputError, match="dask can start processes"),
         scheduler_at("local:1"),
     ):
         pass
@@ -267,7 +267,8 @@ def test_ctrl_c_prints_one_sentence_and_what_a_killed_sweep_left_is_removed(tmp_
     # how long it will take, on a slow machine
     assert all(": about " in notice for notice in notices)
     assert (
-        line == f"foucault: stopped; what is done is in {out}: `foucault sweep --out {out}` goes on"
+        line
+        == f"foucault: stopped; finished rows are in {out}: `foucault sweep --out {out}` resumes"
     )
     assert gone_within(group, PATIENCE_S)
     assert not any(of_dask("*/dask-scratch-space"))

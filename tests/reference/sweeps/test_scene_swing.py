@@ -38,8 +38,8 @@ def test_without_rotation_a_small_swing_has_the_period_of_the_textbook_and_its_p
 @pytest.mark.parametrize(
     ("scene", "reason"),
     [
-        ("conical", "no two highest points"),
-        ("weightless", "no two highest points"),
+        ("conical", "fewer than two highest points"),
+        ("weightless", "fewer than two highest points"),
         ("inverted_rest", "more digits"),
     ],
 )

@@ -346,4 +346,4 @@ def test_a_sweep_that_is_interrupted_does_not_wait_for_rows_that_take_long(tmp_p
     ]
     status, err, _ = interrupted([*minutes, "--out", str(out)], at_work)
     assert status == 130
-    assert err.decode().splitlines()[-1].endswith(f"`foucault sweep --out {out}` goes on")
+    assert err.decode().splitlines()[-1].endswith(f"`foucault sweep --out {out}` resumes")

@@ -93,7 +93,10 @@ def test_nothing_is_taken_from_where_others_can_write(own_cache, mode, why, capf
         assert cache.store("kind", "code", lambda path: path.write_text("code")) is None
     assert (own_cache / "kind" / "code").read_text() == "planted"
     err = capfd.readouterr().err
-    assert err.startswith("foucault: the cache is not used, which costs time only: ") and why in err
+    assert (
+        err.startswith("foucault: running without the cache, which only takes longer: ")
+        and why in err
+    )
     assert len(err.splitlines()) == 1
 
 

@@ -189,7 +189,7 @@ def test_the_command_to_score_says_what_differs_from_the_scene(readings):
     [
         (("--data", "nowhere"), "a folder of golden datasets"),
         (("--data", "SOME", "--studies", "."), "a study as `foucault study` writes it"),
-        (("--data", "SOME", "--studies", "nowhere"), "a folder of results"),
+        (("--data", "SOME", "--studies", "nowhere"), "a folder of study results"),
         (("--out", "mine"), "a new folder, or one that an earlier run wrote"),
     ],
 )
@@ -406,7 +406,7 @@ def test_scenes_are_filtered_by_flag_and_level(atlas, tmp_path):
 
 
 def test_what_has_no_form_in_json_is_refused_and_no_word_of_the_vocabulary_is_lost():
-    with pytest.raises(TypeError, match="no form in JSON"):
+    with pytest.raises(TypeError, match="cannot be written as JSON"):
         json.dumps({"unknown": object()}, default=plain)
     words = json.loads(json.dumps(vocabulary(), default=plain))
     assert [name for name, value in words.items() if value is None] == []
