@@ -223,11 +223,10 @@ class JointCase(FileCase):
         assert isinstance(program, Joint)
         for run, run_program in zip(self.runs, program.programs, strict=True):
             taken = replace(
-                steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0))
+                steps,
+                steps_per_row=round(steps.steps_per_row / (run.setting if way == FACTOR else 1.0)),
             )
-            case = run.case.part(
-                int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum())
-            )
+            case = run.case.part(int((run.case.rows.times <= taken.step_s * LONGEST).sum()))
             pendulum, theta = case.pendulum_of(run_program)
             moved = replace(taken, **vars(pendulum)).rows(theta, case.rows.times, 2)
             effect = moved - pendulum.rows(theta, case.rows.times, 2)
