@@ -1,4 +1,4 @@
-"""Experiments with a program that is run again: what they change, for which its command is fit, and what they found."""
+"""Experiments with a program that is run again: what they change, which its command allows, and what they found."""
 
 from __future__ import annotations
 
@@ -16,8 +16,17 @@ from reference.numbers.precision import DOUBLE
 
 from ...candidates.external import SETTING, placeholders
 
-PUSH = 0.2  # of the rate of the swing: by this the release is pushed, round the vertical
-SWING = ("x", "y", "vx", "vy", "angle", "angle_rate", "azimuth_rate")
+PUSH = 0.2  # of the rate of the swing: the rate round the vertical that is added to the release
+# fields of a scene that make its swing wide
+SWING = (
+    "release.x",
+    "release.y",
+    "release.vx",
+    "release.vy",
+    "release.angle",
+    "release.angle_rate",
+    "release.azimuth_rate",
+)
 ADVICE = (
     "Add {rotation_rate}, {latitude}, {gravity}, {length}, {x0} {y0}, {vx0} {vy0}, {t_end} or {setting}, "
     "and have the program use them."
@@ -32,9 +41,9 @@ class Experiment:
     Attributes:
         id: a stable word, and the name of the file that is kept.
         title: what is changed.
-        values: the fields of the scene with their other values.
-        where: where the mistake is, if the error is gone with it; "" if that would not show it.
-        finer: by which {setting} is divided.
+        values: returns the fields of a scene with their changed values.
+        where: where the mistake is, if the error vanishes with the change; "" if that does not show it.
+        finer: number by which {setting} is divided.
     """
 
     id: str
@@ -49,46 +58,60 @@ class Experiment:
 
 
 def _times(factor: str, *fields: str) -> Values:
+    """Return a change that multiplies fields of a scene by a factor."""
+
     def values(scene: Scene) -> dict[str, str]:
-        texts = {field: attrgetter(field)(scene) for field in fields}
-        return {
-            field: str(Decimal(text) * Decimal(factor))
-            for field, text in texts.items()
-            if text is not None
-        }
+        changed = {}
+        for field in fields:
+            text = attrgetter(field)(scene)
+            if text is not None:
+                changed[field] = str(Decimal(text) * Decimal(factor))
+        return changed
 
     return values
 
 
 def _pole(scene: Scene) -> dict[str, str]:
+    """Return the latitude of the nearer pole."""
     return {"site.latitude": "-90" if scene.exact.latitude < 0 else "90"}
 
 
 def _pushed(scene: Scene) -> dict[str, str]:
-    release, start = scene.release, Start.of(scene.exact, DOUBLE.prec)
+    """Return the velocity of the release, pushed round the vertical."""
+    release = scene.release
+    start = Start.of(scene.exact, DOUBLE.prec)
     rate = PUSH * start.fastest_rate
     if release.angle is not None:
         turn = Decimal(release.azimuth_rate or "0") + Decimal(f"{math.degrees(rate):.3g}")
         return {"release.azimuth_rate": str(turn)}
     x, y, _ = (float(value) for value in start.position)
-    speed = Decimal(f"{rate * (math.hypot(x, y) or 0.05 * float(scene.exact.length)):.3g}")
-    vx, vy = Decimal(release.vx or "0") + speed, Decimal(release.vy or "0") - speed
+    distance = math.hypot(x, y) or 0.05 * float(scene.exact.length)
+    speed = Decimal(f"{rate * distance:.3g}")
+    vx = Decimal(release.vx or "0") + speed
+    vy = Decimal(release.vy or "0") - speed
     return {"release.vx": str(vx), "release.vy": str(vy)}
 
 
 EXPERIMENTS = (
     Experiment("half_step", "half the step", lambda _: {}, finer=2),
     Experiment("quarter_g", "a quarter of g", _times("0.25", "site.gravity")),
-    Experiment("no_rotation", "no rotation", lambda _: {"site.rotation_rate": "0"}, "in what the rotation does"),
     Experiment(
-        "small_swing", "a swing a hundredth as wide", _times("0.01", *(f"release.{name}" for name in SWING)),
+        "no_rotation",
+        "no rotation",
+        lambda _: {"site.rotation_rate": "0"},
+        "in what the rotation does",
+    ),
+    Experiment(
+        "small_swing",
+        "a swing a hundredth as wide",
+        _times("0.01", *SWING),
         "in what a wide swing does",
     ),
     Experiment("pushed", "the release pushed", _pushed),
     Experiment("twice_length", "twice the length", _times("2", "pendulum.length")),
     Experiment("pole", "the pole", _pole, "in what the latitude does"),
     Experiment("short_span", "half the span", _times("0.5", "run.t_end")),
-)  # fmt: skip
+)
 MOST_RUNS = len(EXPERIMENTS)
 
 
@@ -143,26 +166,36 @@ class Experiments:
 
 
 def possible(scene: Scene, command: str) -> list[Experiment]:
-    """Return the experiments for which a command has the placeholders: those that give a program all of a change.
+    """Return the experiments of which a command's placeholders pass on the whole change.
 
     Raises:
         InputError: there are none.
     """
-    words, given = set(re.findall(r"(?<!\{)\{(\w+)\}", command)), placeholders(scene)
-    angles, places = (
-        {name for name in given if re.match(form, name)} for form in ("a(ng|z)", "v?[xyz]0")
-    )
+    words = set(re.findall(r"(?<!\{)\{(\w+)\}", command))
+    given = placeholders(scene)
     experiments = []
     for experiment in EXPERIMENTS:
         try:
             values = placeholders(experiment.changed(scene))
-        except FoucaultError:  # the scene has no such form: twice its swing over the top
+        except FoucaultError:  # such a scene is impossible: twice its swing goes over the top
             continue
-        changed = {name for name, value in values.items() if value != given[name]} - {"z0", "vz0"}
-        complete = changed - angles <= words or (changed & angles and changed - places <= words)
-        if (changed and complete) or (experiment.finer > 1 and SETTING.strip("{}") in words):
+        changed = {name for name, value in values.items() if value != given[name]}
+        finer_step = experiment.finer > 1 and SETTING.strip("{}") in words
+        if finer_step or _passes_on(words, changed - {"z0", "vz0"}):
             experiments.append(experiment)
     if not experiments:
         expected = "a command with a placeholder that an experiment can change"
         raise InputError("--experiments", command, expected, ADVICE)
     return experiments
+
+
+def _passes_on(words: set[str], changed: set[str]) -> bool:
+    """Return whether the placeholders of a command pass on all that changed.
+
+    A release may be given by its position or by its angles.
+    """
+    angles = {name for name in changed if re.match("a(ng|z)", name)}
+    positions = {name for name in changed if re.match("v?[xyz]0", name)}
+    if not changed:
+        return False
+    return changed - angles <= words or (bool(angles) and changed - positions <= words)
