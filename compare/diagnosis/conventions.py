@@ -1,6 +1,6 @@
-"""Conventions of a file, corrected in turn: digits, heights, the unit of length and the axes, the clock.
+"""Conventions of a file, corrected in turn: digits, heights, unit of length and axes, clock.
 
-Each function returns the rows as a right program would write them, together with what was corrected.
+Each function returns the rows as a right program would write them, with what was corrected.
 Axes that a program itself computes with, from its release on, belong to the `causes`.
 """
 
@@ -22,16 +22,16 @@ from .case import FileRows, largest
 from .phasors import as_angles, fit_phasors, sinc
 
 # of the distance from the vertical: a row 0 nearer than this to the release is the release
-NEAR = 2e-5
-FLAT = "gives z a constant: its bob does not rise as it swings"
-SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
-OFF = 1e-7  # of the cord: a larger change of the distance from the suspension is reported
-SLIGHT = 1e-9  # of the cord: with a larger change than this, heights are ignored
-ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
+_NEAR = 2e-5
+_FLAT = "gives z a constant: its bob does not rise as it swings"
+_SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
+_OFF = 1e-7  # of the cord: a larger change of the distance from the suspension is reported
+_SLIGHT = 1e-9  # of the cord: with a larger change than this, heights are ignored
+_ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
 ROUGHLY = 0.03  # of the distance from the vertical: how far a release in another unit may be off
-SINGLE = 1e-6  # of the span: rounding of times in single precision
-SHIFTS = 3  # rows by which a clock may be off
-DECAYS = 0.1  # of its frequency: a swing that decays or grows faster shows no unit of time
+_SINGLE = 1e-6  # of the span: rounding of times in single precision
+_SHIFTS = 3  # rows by which a clock may be off
+_DECAYS = 0.1  # of its frequency: a swing that decays or grows faster shows no unit of time
 LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in ("cm", "mm", "km", "ft", "in")}
 TIMES_SAID = {unit: f"counts time in {LONG_NAMES[unit]}" for unit in ("min", "h", "ms", "d")}
 # order and signs by which a file's horizontal columns become the scene's: x of the scene first
@@ -45,17 +45,17 @@ AXES_SAID = {
     ((1, 0), (1, -1)): ("axes_turned", "writes south as x and east as y"),
     ((1, 0), (-1, -1)): ("axes_turned", "writes south as x and west as y"),
 }
-PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
+_PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
 # order of a file's columns by which its third becomes the vertical
-VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
-Axes = tuple[tuple[int, int], tuple[int, int]]
-AS_IN_SCENE: Axes = ((0, 1), (1, 1))
+_VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
+_Axes = tuple[tuple[int, int], tuple[int, int]]
+_AS_IN_SCENE: _Axes = ((0, 1), (1, 1))
 
 
-def is_release(row: Array, release: Array, noise: float) -> bool:
+def _is_release(row: Array, release: Array, noise: float) -> bool:
     """Return whether a row is the release but for its rounding."""
     size = max(float(np.hypot(release[0], release[1])), 1e-6 * float(np.abs(release).max()))
-    return bool(np.abs(row[:2] - release[:2]).max() <= NEAR * size + 2 * noise)
+    return bool(np.abs(row[:2] - release[:2]).max() <= _NEAR * size + 2 * noise)
 
 
 def digits(rows: FileRows) -> FileRows:
@@ -101,7 +101,7 @@ def _with_digits(values: Array, count: int) -> Array:
 def _in_single_precision(values: Array) -> bool:
     """Return whether values are numbers of single precision, in full or printed with nine digits.
 
-    C prints nine digits. Of a large swing these have as few decimals as numbers in double precision.
+    C prints nine digits. In a large swing these are as few decimals as in double precision.
     """
     single = values.astype(np.float32).astype(float)
     return _same(single, values) or _same(_with_digits(single, 9), values)
@@ -142,18 +142,18 @@ def heights(rows: FileRows, length: float) -> FileRows:
         _Heights(1, length, "counts z from the lowest point"),
         _Heights(-1, length, down),
     )
-    for order, counted in itertools.product(VERTICALS, counts):
+    for order, counted in itertools.product(_VERTICALS, counts):
         plane = rows.positions[:, order[:2]]
         column = rows.positions[:, order[2]] * counted.sign - counted.shift
         square = plane[:, 0] ** 2 + plane[:, 1] ** 2
         if (square >= length * length).any():
             continue
         on_sphere = -np.sqrt(length * length - square)
-        if np.abs(column - on_sphere).max() > ALIKE * length:
+        if np.abs(column - on_sphere).max() > _ALIKE * length:
             continue
 
         if float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere)):
-            return _flat(rows.changed(Deviation("z_constant", FLAT)))
+            return _flat(rows.changed(Deviation("z_constant", _FLAT)))
         return _with_heights(rows, order, counted, length)
     return _flat(rows)
 
@@ -161,7 +161,7 @@ def heights(rows: FileRows, length: float) -> FileRows:
 def _with_heights(
     rows: FileRows, order: tuple[int, int, int], counted: _Heights, length: float
 ) -> FileRows:
-    """Return rows with their heights as in the scene; without heights if the bob leaves the sphere."""
+    """Return rows with heights as in the scene; without heights if the bob leaves the sphere."""
     plane = rows.positions[:, order[:2]]
     printed = rows.positions[:, order[2]]
     column = printed * counted.sign - counted.shift
@@ -170,20 +170,20 @@ def _with_heights(
         word = "z_down" if counted.sign < 0 else "z_from_lowest"
         size = float(np.abs(column - printed).max())
         corrected = corrected.changed(Deviation(word, counted.text, size))
-    if order != VERTICALS[0]:
+    if order != _VERTICALS[0]:
         text = f"calls the vertical {'xyz'[order[2]]}"
         corrected = corrected.changed(Deviation("vertical_is_not_z", text, length))
 
     square = plane[:, 0] ** 2 + plane[:, 1] ** 2
     cord = np.sqrt(square + column * column)
     drift = float(np.ptp(cord))
-    if drift > max(20 * rows.noise, OFF * length):
-        spring = Deviation("off_the_sphere", SPRING, drift)
+    if drift > max(20 * rows.noise, _OFF * length):
+        spring = Deviation("off_the_sphere", _SPRING, drift)
         return _flat(corrected.changed(spring, cord=float(cord.mean())))
     if corrected is not rows:
         return replace(corrected, positions=np.column_stack([plane, column]))
     # a slight drift is not reported, but such heights cannot be fitted either
-    if drift > max(20 * rows.noise, SLIGHT * length) or rows.relative:
+    if drift > max(20 * rows.noise, _SLIGHT * length) or rows.relative:
         return _flat(rows)
     return rows
 
@@ -200,7 +200,7 @@ def _offset_of_heights(rows: FileRows, length: float) -> float:
         return 0.0
     above = z + np.sqrt(length * length - square)
     offset = float(np.median(above))
-    same = max(20 * rows.noise, OFF * length)
+    same = max(20 * rows.noise, _OFF * length)
     cord = np.sqrt(square + z * z)
     if np.ptp(above) > same or np.ptp(cord) <= same or abs(offset - length) <= same:
         return 0.0
@@ -224,13 +224,13 @@ class _UnitOfLength:
     text: str
 
 
-METRES = _UnitOfLength(1.0, "")
+_METRES = _UnitOfLength(1.0, "")
 
 
 def _units_of_length(length: float) -> list[_UnitOfLength]:
     """Return the units in which a file may write lengths, metres first."""
     return [
-        METRES,
+        _METRES,
         *(_UnitOfLength(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()),
         *(
             _UnitOfLength(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}")
@@ -250,24 +250,24 @@ def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRow
         rename: whether the horizontal axes may have other names.
     """
     first, last = rows.positions[[0, -1]]
-    released = any(is_release(row, release, rows.noise) for row in (first, last))
+    released = any(_is_release(row, release, rows.noise) for row in (first, last))
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
 
     units = _units_of_length(length)
-    named = [*AXES_SAID] if rename else [AS_IN_SCENE]
+    named = [*AXES_SAID] if rename else [_AS_IN_SCENE]
     for row, unit, (order, signs) in itertools.product((first, last), units, named):
         placed = row[[*order]] / unit.per_metre * np.array(signs)
-        if is_release(placed, release, rows.noise / unit.per_metre):
+        if _is_release(placed, release, rows.noise / unit.per_metre):
             return _renamed(_in_metres(rows, unit, length), order, signs)
 
     # another unit or other axes, and a release that is a little off
     distance = np.hypot(*release[:2])
     # a unit of about a metre, such as a cord of a metre: the release alone may be off
-    near = [(unit, AS_IN_SCENE) for unit in units if abs(unit.per_metre - 1) >= 3 * ROUGHLY]
+    near = [(unit, _AS_IN_SCENE) for unit in units if abs(unit.per_metre - 1) >= 3 * ROUGHLY]
     # a release that is nearly right may have the right axes
     if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * distance:
-        near += [(METRES, way) for way in named if way != AS_IN_SCENE]
+        near += [(_METRES, way) for way in named if way != _AS_IN_SCENE]
     for unit, (order, signs) in near:
         placed = first[[*order]] / unit.per_metre * np.array(signs)
         if np.abs(placed - release[:2]).max() < ROUGHLY * distance:
@@ -279,12 +279,12 @@ def _from_angles(rows: FileRows, release: Array, length: float) -> FileRows | No
     """Return rows that give angles of the cord as positions in m; None if they do not."""
     first = rows.positions[0]
     distance = float(np.hypot(*release[:2]))
-    # the angle of each coordinate by itself, or the angle of the cord along the direction of the bob
+    # the angle of each coordinate by itself, or that of the cord along the direction of the bob
     separate = np.arcsin(np.clip(release[:2] / length, -1, 1))
     polar = release[:2] / max(distance, 1e-300) * math.asin(min(1.0, distance / length))
     for unit, size in (("degrees", 180 / math.pi), ("radians", 1.0)):
         for expected in (separate, polar):
-            near = NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
+            near = _NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
             if not np.abs(first[:2] / size - expected).max() <= near:
                 continue
             theta = rows.plane / size
@@ -330,8 +330,8 @@ def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> 
 
 def clock(rows: FileRows, release: Array) -> FileRows:
     """Find rows in reverse order, and a clock that does not start at 0."""
-    begins = is_release(rows.positions[0], release, rows.noise)
-    ends = is_release(rows.positions[-1], release, rows.noise)
+    begins = _is_release(rows.positions[0], release, rows.noise)
+    ends = _is_release(rows.positions[-1], release, rows.noise)
     if ends and not begins and len(rows.times) > 2:
         return replace(_reversed(rows), starts=True)
     if begins and 0 < rows.times[0] < rows.times[-1]:
@@ -351,7 +351,7 @@ def other_conventions(rows: FileRows, release: Array) -> Iterator[FileRows]:
     if 0 < rows.times[0] < rows.times[-1]:  # a clock that starts late, and a release that is off
         yield _from_zero(rows, release)
     x, y = release[:2]
-    if abs(abs(x) - abs(y)) <= NEAR * abs(x):
+    if abs(abs(x) - abs(y)) <= _NEAR * abs(x):
         signs = (1, 1) if x * y > 0 else (-1, -1)
         yield _renamed(rows, (1, 0), signs)
 
@@ -382,7 +382,7 @@ def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
             return None
         rate = abs(fit.phasors.square) ** 0.5
         # a part of a wide swing in another unit looks like one that decays, or grows, within it
-        return rate / frequency if abs(fit.phasors.drag) < DECAYS * rate else None
+        return rate / frequency if abs(fit.phasors.drag) < _DECAYS * rate else None
 
     as_printed = ratio(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:
@@ -408,7 +408,7 @@ def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
     even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
     error_s = float(np.abs(rows.times - even).max())
     single = any(convention.id == "single_precision" for convention in rows.conventions)
-    if not single or error_s > SINGLE * rows.times[-1]:  # or they are not evenly spaced
+    if not single or error_s > _SINGLE * rows.times[-1]:  # or they are not evenly spaced
         return rows
     exact = float(f"{even[1] - even[0]:.6g}") * np.arange(len(even)) + even[0]
     if (exact.astype(np.float32) == rows.times.astype(np.float32)).all():
@@ -447,8 +447,8 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
         fit = fit_phasors(ordered.times, plane, frequency)
         if fit is None or fit.residual > 1e-2 * abs(start):
             continue
-        for parts in range(-SHIFTS * PARTS, SHIFTS * PARTS + 1):
-            motion = fit.phasors.later(parts * spacing_s / PARTS)
+        for parts in range(-_SHIFTS * _PARTS, _SHIFTS * _PARTS + 1):
+            motion = fit.phasors.later(parts * spacing_s / _PARTS)
             distance = abs(motion.start - start) + abs(motion.speed - speed) / frequency
             passages.append(_Passage(float(distance), parts, ordered))
     if not passages:
@@ -458,11 +458,11 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
     if best.distance_m > 2e-2 * abs(start):
         return rows
 
-    shift_s = best.parts * spacing_s / PARTS
+    shift_s = best.parts * spacing_s / _PARTS
     corrected = best.rows
     if best.parts:
         count = abs(best.parts)
-        late = "one row" if count == PARTS else f"{Fraction(count, PARTS)} rows"
+        late = "one row" if count == _PARTS else f"{Fraction(count, _PARTS)} rows"
         side = "ahead of" if best.parts > 0 else "behind"
         text = f"has its clock {side} its rows by {late} ({abs(shift_s):.6g} s)"
         word = "rows_late" if best.parts < 0 else "rows_early"

@@ -1,4 +1,4 @@
-"""The families of models that are fitted to rows: linear, linear in the cord's angle, and the sphere.
+"""The families of models that are fitted to rows: linear, linear in the angle, and the sphere.
 
 The fits do not use the truth. `readings` takes from them the best values of `theta`, and how
 sharply the file determines each of them (`slopes`).
@@ -20,15 +20,16 @@ from .phasors import ComplexArray, PhasorFit, Phasors, as_angles, fit_phasors
 from .programs import NAMES, Program, SphericalPendulum, phasors_of, theta_of
 
 # numbers of theta that two phasors determine
-LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")
-STEPS = 16  # Gauss-Newton steps in one window at most
-DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps: the next one after each step that fails
+_LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")
+_STEPS = 16  # Gauss-Newton steps in one window at most
+_DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps: the next one after each step that fails
 # of the amplitude: how far a nudge moves the rows, so that differences are linear and not noise
-SEEN = 1e-6
+_SEEN = 1e-6
 # in scales: how far each number of theta may be from its guess
-WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)
-HOPELESS = 0.05  # of the amplitude: a fit that leaves more of a window is not continued in the next
-WINDOWS = 8.0  # ratio of the length of a window to that of the one before
+_WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)
+# of the amplitude: a fit that leaves more of a window is not continued in the next
+_HOPELESS = 0.05
+_WINDOWS = 8.0  # ratio of the length of a window to that of the one before
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def _fit_of(kind: str, fit: PhasorFit, times: Array, right: Program) -> FamilyFi
     theta = np.zeros(len(NAMES))
     theta[11] = right.length
     theta = theta_of(fit.phasors, theta)
-    free = tuple(NAMES.index(name) for name in LINEAR)
+    free = tuple(NAMES.index(name) for name in _LINEAR)
     nudges = _nudges(fit.phasors, float(times[-1]), right.length)
 
     def plane_of(theta: Array) -> ComplexArray:
@@ -155,9 +156,9 @@ def _nudges(phasors: Phasors, span_s: float, length: float) -> dict[int, float]:
 
 
 def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:
-    """Return numbers of rows from the first on, each with a span `ratio` times that of the one before.
+    """Return the numbers of rows in windows that all begin with the first row.
 
-    The last number is that of all rows.
+    Each has a span `ratio` times that of the one before; the last has all rows.
 
     Args:
         times: of the rows in s, from 0 on.
@@ -179,24 +180,24 @@ def fit_pendulum(
     """Return the fit of theta by Gauss-Newton from the best of some guesses; None if nothing fits.
 
     It is fitted in windows of growing span. A number that the rows do not determine stays near
-    its guess: it is held there as loosely as `WIDTHS` says.
+    its guess: it is held there as loosely as `_WIDTHS` says.
     """
-    first, *longer = (case.part(count) for count in windows(case.rows.times, WINDOWS, 16, 24))
+    first, *longer = (case.part(count) for count in windows(case.rows.times, _WINDOWS, 16, 24))
     small_nudges = np.full(len(NAMES), 1e-6)
     fits = [_WindowFit(first, pendulum, guess, small_nudges).best(guess) for guess in guesses]
     best, guess = _nearest_of_equals(first, fits, guesses)
     size = float(np.abs(case.rows.plane).max())
     for part in longer:
-        if not best.rest <= HOPELESS * float(np.abs(part.rows.plane).max()):
+        if not best.rest <= _HOPELESS * float(np.abs(part.rows.plane).max()):
             return None
-        effects = np.linalg.norm(best.slopes * case.scales, axis=0) * WINDOWS
-        nudges = np.clip(SEEN * size / np.maximum(effects, 1e-300), 1e-13, 1e-2)
+        effects = np.linalg.norm(best.slopes * case.scales, axis=0) * _WINDOWS
+        nudges = np.clip(_SEEN * size / np.maximum(effects, 1e-300), 1e-13, 1e-2)
         # a number that a short window hardly determines may be far off: a guess may be nearer
         starts = [best.theta, *guesses]
         residuals = [_residual_m(part, pendulum, theta) for theta in starts]
         start = starts[first_least(residuals, part.resolution)]
         best = _WindowFit(part, pendulum, guess, nudges).best(start)
-    return best if best.rest <= HOPELESS * size else None
+    return best if best.rest <= _HOPELESS * size else None
 
 
 def _nearest_of_equals(
@@ -211,7 +212,7 @@ def _nearest_of_equals(
     if not equals:
         return fits[0], guesses[0]
     moves = [
-        float(np.linalg.norm((fit.theta - guess) / case.scales / WIDTHS)) for fit, guess in equals
+        float(np.linalg.norm((fit.theta - guess) / case.scales / _WIDTHS)) for fit, guess in equals
     ]
     return equals[first_least(moves)]
 
@@ -248,14 +249,14 @@ class _WindowFit:
         """
         noise = self.case.resolution
         root = math.sqrt(len(self.case.rows.times))
-        damping = list(DAMPING)
+        damping = list(_DAMPING)
         slopes: Array | None = None
         fresh = False  # whether the slopes are those of the best theta
         settled = False
         best = theta
         least = math.inf
         best_residuals = np.zeros(self.case.rows.positions.size)
-        for _ in range(STEPS):
+        for _ in range(_STEPS):
             residuals = self._residuals(theta)
             size = float(np.linalg.norm(residuals)) / root
             stuck = not size < 0.5 * least
@@ -304,7 +305,7 @@ class _WindowFit:
 
         `hold` is the weight in m of a number that is one width from its guess.
         """
-        holds = hold / WIDTHS
+        holds = hold / _WIDTHS
         offsets = (theta - self.guess) / self.case.scales
         matrix = np.vstack([slopes, np.diag(holds)])
         right = np.concatenate([residuals, -holds * offsets])

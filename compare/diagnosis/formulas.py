@@ -1,6 +1,7 @@
-"""A slip in a closed formula: the two rates of a linear model, with coefficients that are not its own.
+"""A slip in a closed formula: the two rates of a linear model, with other coefficients.
 
-A program that solves no equation but prints a formula keeps its rates whatever it does to its coefficients:
+A program that prints a formula instead of solving an equation keeps its rates, whatever its
+coefficients are:
 
     x, y = c1 cos ωt cos βt + c2 cos ωt sin βt + c3 sin ωt cos βt + c4 sin ωt sin βt + c5.
 
@@ -28,29 +29,34 @@ from .fitted import readings_of
 from .programs import Program
 from .thresholds import NEEDED
 
-PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
-LEAST = 24  # rows, twice the numbers that are fitted
-STEPS = 12  # Gauss-Newton steps in one window at most
-GAIN = 0.9  # of the residual: a step that leaves more is not taken
-WINDOW = 4.0  # ratio of the length of a window to that of the one before
-HELD = 1e-9  # of the amplitude: holds a rate that a window does not determine
-SAME = 1e-6  # of the amplitude: coefficients that differ by less are equal
-FLAT = (
-    1e-12  # of the largest singular value: combinations of products below it are not distinguished
+_PRODUCTS = (
+    "cos ωt cos βt",
+    "cos ωt sin βt",
+    "sin ωt cos βt",
+    "sin ωt sin βt",
+    "the constant term",
 )
-MOST = 3  # coefficients that are wrong
+_LEAST = 24  # rows, twice the numbers that are fitted
+_STEPS = 12  # Gauss-Newton steps in one window at most
+_GAIN = 0.9  # of the residual: a step that leaves more is not taken
+_WINDOW = 4.0  # ratio of the length of a window to that of the one before
+_HELD = 1e-9  # of the amplitude: holds a rate that a window does not determine
+_SAME = 1e-6  # of the amplitude: coefficients that differ by less are equal
+# of the largest singular value: combinations of products below it are not distinguished
+_FLAT = 1e-12
+_MOST = 3  # coefficients that are wrong
 # of the amplitude: an integrator's step may change a coefficient by less
-SLIGHT = 0.05
-RELEASES = (0.0, 1.0, -1.0, 2.0)  # velocities of the release over that of rest against the stars
+_SLIGHT = 0.05
+_RELEASES = (0.0, 1.0, -1.0, 2.0)  # velocities of the release over that of rest against the stars
 
 
 @dataclass(frozen=True)
-class Slip:
+class _Slip:
     """A coefficient that differs from the model's.
 
     Attributes:
         column: 0 of x, 1 of y.
-        product: its index in `PRODUCTS`.
+        product: its index in `_PRODUCTS`.
         value: in m.
         right: the model's, in m.
     """
@@ -62,20 +68,20 @@ class Slip:
 
     def sentence(self, size: float) -> str:
         """Return the sentence that reports it; numbers that are small beside a size in m are 0."""
-        value = self.value if abs(self.value) > SAME * size else 0.0
-        right = self.right if abs(self.right) > SAME * size else 0.0
-        where = f"in the formula of {'xy'[self.column]}, {PRODUCTS[self.product]}"
+        value = self.value if abs(self.value) > _SAME * size else 0.0
+        right = self.right if abs(self.right) > _SAME * size else 0.0
+        where = f"in the formula of {'xy'[self.column]}, {_PRODUCTS[self.product]}"
         return f"{where} has {value:.6g} m where the model has {right:.6g} m"
 
 
 @dataclass(frozen=True)
-class Formula:
+class _Formula:
     """The products of two rates, with their coefficients.
 
     Attributes:
         omega: rate of the swing in rad/s.
         beta: rate of the plane in rad/s.
-        coefficients: of x and y in m, in the order of `PRODUCTS`, shape (5, 2).
+        coefficients: of x and y in m, in the order of `_PRODUCTS`, shape (5, 2).
         rest: root mean square of the residuals in m.
     """
 
@@ -85,12 +91,12 @@ class Formula:
     rest: float
 
     @property
-    def mirrored(self) -> Formula:
+    def mirrored(self) -> _Formula:
         """The same formula with the other sign of β."""
         signs = np.array([[1], [-1], [1], [-1], [1]])
         return replace(self, beta=-self.beta, coefficients=self.coefficients * signs)
 
-    def slips(self, right: Program, released: float, same: float) -> list[Slip]:
+    def slips(self, right: Program, released: float, same: float) -> list[_Slip]:
         """Return the coefficients that differ by more than `same` from those of a linear model.
 
         There are none if a coefficient differs slightly: an integrator's step does that. The
@@ -105,13 +111,13 @@ class Formula:
 
         difference = np.abs(self.coefficients - expected)
         differs = difference > same
-        slightly = difference < SLIGHT * np.abs(self.coefficients).max()
+        slightly = difference < _SLIGHT * np.abs(self.coefficients).max()
         if (differs & slightly).any():
             return []
         slips = []
         for product, column in np.argwhere(differs).tolist():
             value = float(self.coefficients[product, column])
-            slips.append(Slip(column, product, value, float(expected[product, column])))
+            slips.append(_Slip(column, product, value, float(expected[product, column])))
         return slips
 
 
@@ -120,17 +126,17 @@ def of_formula(case: FileCase) -> Explanation | None:
 
     None if they do not, or with too many slips.
     """
-    formula = fit_formula(case.rows, case.right)
+    formula = _fit_formula(case.rows, case.right)
     if formula is None or formula.rest > NEEDED * case.resolution:
         return None
     size = float(np.hypot(case.right.x, case.right.y))
-    same = max(SAME * size, 10 * case.rows.noise)
+    same = max(_SAME * size, 10 * case.rows.noise)
     best: Explanation | None = None
-    fewest = MOST + 1
+    fewest = _MOST + 1
     for signed in (formula, formula.mirrored):
-        for released in RELEASES:
+        for released in _RELEASES:
             slips = signed.slips(case.right, released, same)
-            if not 0 < len(slips) <= MOST:
+            if not 0 < len(slips) <= _MOST:
                 continue
             explanation = _explanation_with(case, signed, slips)
             if explanation is not None and len(slips) < fewest:
@@ -141,8 +147,8 @@ def of_formula(case: FileCase) -> Explanation | None:
     return best
 
 
-def _explanation_with(case: FileCase, formula: Formula, slips: list[Slip]) -> Explanation | None:
-    """Return the explanation of rows whose slips are corrected; None unless all of it is certain."""
+def _explanation_with(case: FileCase, formula: _Formula, slips: list[_Slip]) -> Explanation | None:
+    """Return the explanation of rows with their slips corrected; None unless all is certain."""
     basis = _basis(case.rows.times, formula.omega, formula.beta)
     positions = case.rows.plane.copy()
     for slip in slips:
@@ -154,32 +160,32 @@ def _explanation_with(case: FileCase, formula: Formula, slips: list[Slip]) -> Ex
     return explanation if certain and explanation.corrected_m <= case.enough else None
 
 
-def fit_formula(rows: FileRows, right: Program) -> Formula | None:
+def _fit_formula(rows: FileRows, right: Program) -> _Formula | None:
     """Return the formula that leaves least, starting from the rates of the scene's own swing.
 
     None if there are too few rows. The span grows, so that no turn of the phase is lost. A formula
     and its mirror image leave as much: one of them is returned.
     """
     beta = right.rate * math.sin(math.radians(right.latitude))
-    if len(rows.times) < LEAST or not right.g or not beta:
+    if len(rows.times) < _LEAST or not right.g or not beta:
         return None
     times = rows.times
     plane = rows.plane
     rates = np.array([math.sqrt(right.g / right.length), -abs(beta)])
     norm_m = math.inf
-    hold = HELD * float(np.abs(plane).max())
-    for count in windows(times, WINDOW, LEAST, LEAST):
+    hold = _HELD * float(np.abs(plane).max())
+    for count in windows(times, _WINDOW, _LEAST, _LEAST):
         model = partial(_residuals, times[:count], plane[:count], hold * math.sqrt(count))
-        rates, norm_m = gauss_newton(model, rates, steps=STEPS, gain=GAIN)
+        rates, norm_m = gauss_newton(model, rates, steps=_STEPS, gain=_GAIN)
         if not math.isfinite(norm_m):
             return None
     omega, beta = rates.tolist()
-    coefficients = solved(_basis(times, omega, beta), plane, FLAT)
-    return Formula(omega, beta, coefficients, norm_m / math.sqrt(len(times)))
+    coefficients = solved(_basis(times, omega, beta), plane, _FLAT)
+    return _Formula(omega, beta, coefficients, norm_m / math.sqrt(len(times)))
 
 
 def _basis(times: Array, omega: float, beta: float) -> Array:
-    """Return the values of `PRODUCTS`, shape (times, 5)."""
+    """Return the values of `_PRODUCTS`, shape (times, 5)."""
     cos_swing = np.cos(omega * times)
     sin_swing = np.sin(omega * times)
     cos_turn = np.cos(beta * times)
@@ -213,7 +219,7 @@ def _residuals(
     """
     omega, beta = rates.tolist()
     basis = _basis(times, omega, beta)
-    coefficients = solved(basis, plane, FLAT)
+    coefficients = solved(basis, plane, _FLAT)
 
     def slopes() -> Array:
         columns = [slope.ravel() for slope in _slopes(times, omega, beta, coefficients)]

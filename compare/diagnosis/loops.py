@@ -1,4 +1,4 @@
-"""Steps of a linear model whose statements follow each other, the second with what the first has changed.
+"""Steps of a linear model whose statements each use what the ones before have changed.
 
     vx += h (-q x + f vy);  vy += h (-q y - f vx);  x += h vx;  y += h vy
 
@@ -24,35 +24,39 @@ from .thresholds import NEEDED
 
 # statements of one step: v of one axis, x and y of both; an axis moved between the velocities makes
 # the same motion
-ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
+_ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
 # with a factor on both velocities in place of the drag
-DAMPED = tuple(f"{order} factor" for order in ORDERS)
-# positions with h²/2 a, then velocities with the mean of a before and after, both of the old velocity
-VERLET = "verlet"
-# half the velocities, the positions, half the velocities again, the accelerations of what is there by then
-LEAPFROG = "leapfrog"
-EXPLICIT = "both accelerations of the velocity before them,"
-IN_TURN = "semi-implicit Euler, its velocities updated one after the other, the second with the first one's new value,"
-TITLES = {
-    "vx": ("in_turn", IN_TURN),
-    "vy": ("in_turn", IN_TURN),
-    "xy": ("in_turn_drift", f"{IN_TURN} positions first,"),
-    "ve": ("leapfrog", f"velocity Verlet, {EXPLICIT}"),
-    "le": ("leapfrog", f"leapfrog, {EXPLICIT}"),
+_DAMPED = tuple(f"{order} factor" for order in _ORDERS)
+# positions with h²/2 a, then velocities with the mean of a before and after, both with the old
+# velocity
+_VERLET = "verlet"
+# half of the change of the velocities, the positions, the other half
+_LEAPFROG = "leapfrog"
+_EXPLICIT = "both accelerations of the velocity before them,"
+_IN_TURN = (
+    "semi-implicit Euler, its velocities updated one after the other, "
+    "the second with the first one's new value,"
+)
+_TITLES = {
+    "vx": ("in_turn", _IN_TURN),
+    "vy": ("in_turn", _IN_TURN),
+    "xy": ("in_turn_drift", f"{_IN_TURN} positions first,"),
+    "ve": ("leapfrog", f"velocity Verlet, {_EXPLICIT}"),
+    "le": ("leapfrog", f"leapfrog, {_EXPLICIT}"),
 }
-FINEST = 1e-4  # ωh: the shortest step that is tried
-TRIED = 10  # numbers of steps that are tried at a time
-NEWTON = 8  # Gauss-Newton steps of a fit
-GAIN = 0.9  # of the residual: a step that leaves more ends a fit
-LEAST = 24  # rows
-NEAR = 1e-3  # of the amplitude: the most that two phasors may leave
-# indices of theta that are fitted with a number of steps: turn, pull, drag and place of the release;
-# and its velocity, if it is not the scene's
-FITTED = (2, 3, 4, 5, 6, 7, 8)
-PUSHED = (*FITTED, 9, 10)
+_FINEST = 1e-4  # ωh: the shortest step that is tried
+_TRIED = 10  # numbers of steps that are tried at a time
+_NEWTON = 8  # Gauss-Newton steps of a fit
+_GAIN = 0.9  # of the residual: a step that leaves more ends a fit
+_LEAST = 24  # rows
+_NEAR = 1e-3  # of the amplitude: the most that two phasors may leave
+# indices of theta that are fitted with a number of steps: turn, pull, drag and place of the
+# release; and its velocity, if it is not the scene's
+_FITTED = (2, 3, 4, 5, 6, 7, 8)
+_PUSHED = (*_FITTED, 9, 10)
 
 
-def step_matrix(order: str, theta: Array, h: float) -> Array:
+def _step_matrix(order: str, theta: Array, h: float) -> Array:
     """Return one step of x, y, vx, vy, 1 as a matrix, shape (5, 5)."""
     length = theta[11]
     drag = theta[6]
@@ -65,9 +69,9 @@ def step_matrix(order: str, theta: Array, h: float) -> Array:
         "y": (1, [0.0, 0.0, 0.0, 1.0, 0.0]),
     }
     accelerations = np.array([statements["vx"][1], statements["vy"][1]])
-    if order == VERLET:
+    if order == _VERLET:
         return _verlet(accelerations, h)
-    if order == LEAPFROG:
+    if order == _LEAPFROG:
         return _leapfrog(accelerations, h)
 
     matrix = np.eye(5)
@@ -82,7 +86,7 @@ def step_matrix(order: str, theta: Array, h: float) -> Array:
 
 
 def _verlet(accelerations: Array, h: float) -> Array:
-    """Return a step of velocity Verlet; `accelerations` has the rates of vx and vy, shape (2, 5)."""
+    """Return a step of velocity Verlet; `accelerations` are the rates of vx and vy, (2, 5)."""
     matrix = np.eye(5)
     matrix[:2] += h * np.eye(5)[2:4] + h * h / 2 * accelerations
     matrix[2:4] += h / 2 * (accelerations + accelerations @ matrix)
@@ -90,7 +94,7 @@ def _verlet(accelerations: Array, h: float) -> Array:
 
 
 def _leapfrog(accelerations: Array, h: float) -> Array:
-    """Return a step of leapfrog; `accelerations` has the rates of vx and vy, shape (2, 5)."""
+    """Return a step of leapfrog; `accelerations` are the rates of vx and vy, (2, 5)."""
     half_kick = np.eye(5)
     half_kick[2:4] += h / 2 * accelerations
     drift = np.eye(5)
@@ -123,12 +127,12 @@ class LinearSteps(SphericalPendulum):
     @property
     def title(self) -> tuple[str, str]:
         """The word of its method, and the name that people use."""
-        return TITLES[self.method[:2]]
+        return _TITLES[self.method[:2]]
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x and y in m, shape (times, 2)."""
         indices = np.round(times / self.spacing_s).astype(int)
-        matrix = step_matrix(self.method, theta, self.step_s)
+        matrix = _step_matrix(self.method, theta, self.step_s)
         if not np.isfinite(matrix).all():
             return np.full((len(times), 2), np.nan)
         matrix = np.linalg.matrix_power(matrix, self.steps_per_row)
@@ -160,10 +164,10 @@ def likely_loops(case: FileCase) -> list[LinearSteps]:
     phasors = _phasors_of_even_rows(case)
     if phasors is None:
         return []
-    orders = [*ORDERS, VERLET, LEAPFROG]
-    if abs(phasors.drag) * float(case.rows.times[-1]) > NEAR:
-        orders += DAMPED
-    for free in (FITTED, PUSHED):
+    orders = [*_ORDERS, _VERLET, _LEAPFROG]
+    if abs(phasors.drag) * float(case.rows.times[-1]) > _NEAR:
+        orders += _DAMPED
+    for free in (_FITTED, _PUSHED):
         search = _Search(case, phasors, free)
         fits = [search.best(order) for order in orders]
         exact = [fit for fit in fits if fit.residual_m <= NEEDED * case.resolution]
@@ -179,14 +183,14 @@ def _phasors_of_even_rows(case: FileCase) -> Phasors | None:
     None if there are none, or the rows are not evenly spaced from the release on.
     """
     times = case.rows.times
-    if len(times) < LEAST or times[0] != 0 or not case.frequency:
+    if len(times) < _LEAST or times[0] != 0 or not case.frequency:
         return None
     spacings = times / float(times[1])
     if not np.abs(spacings - np.round(spacings)).max() < 1e-6:
         return None
     plane = case.rows.plane @ np.array([1, 1j])
     fit = fit_phasors(times, plane, case.frequency)
-    if fit is None or fit.residual > NEAR * float(np.abs(plane).max()):
+    if fit is None or fit.residual > _NEAR * float(np.abs(plane).max()):
         return None
     return fit.phasors
 
@@ -210,9 +214,9 @@ class _Search:
         case = self.case
         fits: dict[int, _Fit] = {}
         low = 1
-        high = max(1, int(float(case.rows.times[1]) * case.frequency / FINEST))
+        high = max(1, int(float(case.rows.times[1]) * case.frequency / _FINEST))
         while True:
-            for count in np.unique(np.geomspace(low, high, TRIED).round().astype(int)).tolist():
+            for count in np.unique(np.geomspace(low, high, _TRIED).round().astype(int)).tolist():
                 if count not in fits:
                     fits[count] = self._fitted(order, count)
             best = min(fits, key=lambda count: fits[count].residual_m)
@@ -252,6 +256,6 @@ class _Search:
             return steps.rows(theta_with(numbers), rows.times, 2).ravel()
 
         model = by_differences(rows_with, rows.plane.ravel(), np.full(len(free), 1e-6))
-        numbers, norm_m = gauss_newton(model, theta[free] / scales, steps=NEWTON, gain=GAIN)
+        numbers, norm_m = gauss_newton(model, theta[free] / scales, steps=_NEWTON, gain=_GAIN)
         guess = tuple(theta_with(numbers).tolist())
         return _Fit(replace(steps, guess=guess), norm_m / math.sqrt(len(rows.times)))

@@ -24,12 +24,12 @@ from .claims import has_few_digits
 from .phasors import ComplexArray
 from .thresholds import ALTERNATIVES, RIVAL, ROWS_A_NUMBER
 
-LATE_ROWS = (1, -1, 2, -2)  # by which a column may be late
-PRINTED_DIGITS = 10  # of a fitted number at most
+_LATE_ROWS = (1, -1, 2, -2)  # by which a column may be late
+_PRINTED_DIGITS = 10  # of a fitted number at most
 
 
 @dataclass(frozen=True)
-class ColumnMap:
+class _ColumnMap:
     """The columns that a named map makes of the truth.
 
     Attributes:
@@ -66,22 +66,22 @@ class _FittedNumber:
         """Return a number with an uncertainty."""
         decimal, _ = shortest_decimal(value, uncertainty)
         price = 0 if has_few_digits(value, uncertainty) else 1
-        return cls(f"{decimal:.{PRINTED_DIGITS}g}", price)
+        return cls(f"{decimal:.{_PRINTED_DIGITS}g}", price)
 
 
-def maps_of_column(case: FileCase, column: int) -> Iterator[ColumnMap]:
+def _maps_of_column(case: FileCase, column: int) -> Iterator[_ColumnMap]:
     """Yield the maps that may have made a column of the file."""
     printed = case.rows.positions[:, column]
     true = case.truth[:, column]
     names = "xyz"[: case.truth.shape[1]]
     name = names[column]
 
-    def mapped(word: str, text: str, values: Array, price: int = 1) -> ColumnMap:
-        return ColumnMap(f"column_{word}", text, (column,), values.reshape(-1, 1), price)
+    def mapped(word: str, text: str, values: Array, price: int = 1) -> _ColumnMap:
+        return _ColumnMap(f"column_{word}", text, (column,), values.reshape(-1, 1), price)
 
     if np.ptp(printed) <= case.resolution:
         level = float(np.mean(printed))
-        text = f"prints {name} as a constant, {level:.{PRINTED_DIGITS}g}"
+        text = f"prints {name} as a constant, {level:.{_PRINTED_DIGITS}g}"
         yield mapped("constant", text, np.full_like(printed, level))
 
     for other, other_name in enumerate(names):
@@ -107,7 +107,7 @@ def maps_of_column(case: FileCase, column: int) -> Iterator[ColumnMap]:
     text = f"prints {name} with {number.text} m added to it"
     yield mapped("moved", text, true + shift, 1 + number.price)
 
-    for count in LATE_ROWS:
+    for count in _LATE_ROWS:
         if len(printed) <= abs(count) or not _is_even(case):
             continue
         late = "one row" if abs(count) == 1 else f"{abs(count)} rows"
@@ -125,13 +125,13 @@ def _late(printed: Array, true: Array, count: int) -> Array:
     return values
 
 
-def _map_of_plane(word: str, text: str, plane: ComplexArray, price: int) -> ColumnMap:
+def _map_of_plane(word: str, text: str, plane: ComplexArray, price: int) -> _ColumnMap:
     """Return a map of x and y together, with x + iy that it makes."""
     positions = np.column_stack([plane.real, plane.imag])
-    return ColumnMap(f"plane_{word}", text, (0, 1), positions, price)
+    return _ColumnMap(f"plane_{word}", text, (0, 1), positions, price)
 
 
-def maps_of_plane(case: FileCase) -> Iterator[ColumnMap]:
+def _maps_of_plane(case: FileCase) -> Iterator[_ColumnMap]:
     """Yield the maps that may have made x and y together."""
     printed = case.rows.positions[:, :2] @ np.array([1, 1j])
     true = case.truth[:, :2] @ np.array([1, 1j])
@@ -171,7 +171,7 @@ def maps_of_plane(case: FileCase) -> Iterator[ColumnMap]:
     yield _similarity(printed, true)
 
 
-def _similarity(printed: ComplexArray, true: ComplexArray) -> ColumnMap:
+def _similarity(printed: ComplexArray, true: ComplexArray) -> _ColumnMap:
     """Return the map that scales, turns and moves x and y, with four free numbers."""
     factor, shift = solved(np.column_stack([true, np.ones_like(true)]), printed)
     text = (
@@ -182,7 +182,7 @@ def _similarity(printed: ComplexArray, true: ComplexArray) -> ColumnMap:
     return _map_of_plane("moved", text, factor * true + shift, 8)
 
 
-def general_map(case: FileCase) -> ColumnMap:
+def _general_map(case: FileCase) -> _ColumnMap:
     """Return the linear map of x and y, with six free numbers."""
     basis = np.column_stack([case.truth[:, :2], np.ones(len(case.truth))])
     numbers = solved(basis, case.rows.positions[:, :2])
@@ -190,7 +190,7 @@ def general_map(case: FileCase) -> ColumnMap:
     x = f"{a:.6g} x {b:+.6g} y {c:+.6g} m"
     y = f"{d:.6g} x {e:+.6g} y {f:+.6g} m"
     text = f"prints a linear map of x and y: {x}, and {y}"
-    return ColumnMap("plane_mapped", text, (0, 1), basis @ numbers, 12)
+    return _ColumnMap("plane_mapped", text, (0, 1), basis @ numbers, 12)
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ class _Choice:
         groups: for each set of columns, the maps that make it equally well; none if no map does.
     """
 
-    groups: tuple[tuple[ColumnMap, ...], ...]
+    groups: tuple[tuple[_ColumnMap, ...], ...]
 
     @property
     def price(self) -> float:
@@ -244,11 +244,11 @@ def of_observation(case: FileCase) -> Explanation | None:
 
 
 def _cheapest_choice(case: FileCase, wrong: Sequence[int]) -> _Choice:
-    """Return the maps of each wrong column by itself, or those of x and y together if that is cheaper."""
-    separate = {column: _best(case, [*maps_of_column(case, column)]) for column in wrong}
+    """Return the maps of each wrong column, or those of x and y together if that is cheaper."""
+    separate = {column: _best(case, [*_maps_of_column(case, column)]) for column in wrong}
     choice = _Choice(tuple(separate.values()))
     if 0 in wrong and 1 in wrong:
-        plane = _best(case, [*maps_of_plane(case)]) or _best(case, [general_map(case)])
+        plane = _best(case, [*_maps_of_plane(case)]) or _best(case, [_general_map(case)])
         vertical = [maps for column, maps in separate.items() if column > 1]
         together = _Choice((plane, *vertical))
         if together.price < choice.price:
@@ -256,7 +256,7 @@ def _cheapest_choice(case: FileCase, wrong: Sequence[int]) -> _Choice:
     return choice
 
 
-def _reported(maps: Sequence[ColumnMap], size_m: float) -> Deviation:
+def _reported(maps: Sequence[_ColumnMap], size_m: float) -> Deviation:
     """Return what is reported of maps that make the same columns; their effect is a size in m."""
     first = maps[0]
     if first.id == "plane_mapped" or len(maps) > ALTERNATIVES:
@@ -269,8 +269,8 @@ def _reported(maps: Sequence[ColumnMap], size_m: float) -> Deviation:
     return Deviation(ids, f"either {texts}", size_m, EITHER)
 
 
-def _best(case: FileCase, maps: Sequence[ColumnMap]) -> tuple[ColumnMap, ...]:
-    """Return the cheapest of the maps that make their columns: several if they leave about as much."""
+def _best(case: FileCase, maps: Sequence[_ColumnMap]) -> tuple[_ColumnMap, ...]:
+    """Return the cheapest of the maps that make their columns: several if they fit as well."""
     sizes = [max(rms(column_map.residuals(case)), case.resolution) for column_map in maps]
     most_m = RIVAL * min(sizes, default=math.inf)
     near = [
@@ -283,7 +283,7 @@ def _best(case: FileCase, maps: Sequence[ColumnMap]) -> tuple[ColumnMap, ...]:
 
 
 def _uncertainty_m(case: FileCase, residuals: Array) -> float:
-    """Return an estimate of the error of a mean in m: the root mean square residual, or the rounding."""
+    """Return an estimate of the error of a mean in m: the rms residual, or the rounding."""
     return max(rms(residuals[:, None]), case.resolution)
 
 

@@ -29,15 +29,18 @@ from reference.numbers.precision import Array
 from ..observed.least_squares import gauss_newton, solved
 
 ComplexArray = npt.NDArray[np.complex128]
-STEPS = 30  # Gauss-Newton steps at most
-GAIN = 0.999  # of the residual: a step that leaves more ends the fit
-DOUBLE_ROOT = 1e-8  # of a rate: two equal rates are separated by this much
-OVERFLOW = 1e8  # phasors that grow by a larger factor are not fitted
+_STEPS = 30  # Gauss-Newton steps at most
+_GAIN = 0.999  # of the residual: a step that leaves more ends the fit
+_DOUBLE_ROOT = 1e-8  # of a rate: two equal rates are separated by this much
+_OVERFLOW = 1e8  # phasors that grow by a larger factor are not fitted
 
 
 @dataclass(frozen=True)
 class Phasors:
-    """Two phasors and a centre, in the unit of the rows; γ in rad/s, with a positive imaginary part for decay."""
+    """Two phasors and a centre, in the unit of the rows.
+
+    The rates γ are in rad/s, with a positive imaginary part for decay.
+    """
 
     rates: tuple[complex, complex]
     amplitudes: tuple[complex, complex]
@@ -53,9 +56,12 @@ class Phasors:
         start: complex,
         speed: complex,
     ) -> Phasors:
-        """Return the motion of w'' = -(drag + 2iβ) w' - ω² (w - centre) with w = start, w' = speed at t = 0."""
+        """Return the motion of w'' = -(drag + 2iβ) w' - ω² (w - centre).
+
+        At t = 0, w is start and w' is speed.
+        """
         half = complex(-beta, drag / 2)
-        root = np.sqrt(half * half + square) or DOUBLE_ROOT * (abs(half) or 1.0)
+        root = np.sqrt(half * half + square) or _DOUBLE_ROOT * (abs(half) or 1.0)
         first = complex(half + root)
         second = complex(half - root)
         displacement = start - centre
@@ -94,7 +100,10 @@ class Phasors:
 
     @property
     def square(self) -> complex:
-        """ω², the restoring force per displacement in 1/s²; complex if no real model has these rates."""
+        """ω², the restoring force per displacement in 1/s².
+
+        It is complex if no model with drag and rotation has these rates.
+        """
         return -self.rates[0] * self.rates[1]
 
     @property
@@ -138,7 +147,10 @@ def fit_phasors(times: Array, rows: ComplexArray, frequency: float) -> PhasorFit
 
 
 def _is_better(fit: PhasorFit, best: PhasorFit, square: float, size: float) -> bool:
-    """Return whether a fit is better; of two aliases that fit as well, the one nearer to the scene's ω²."""
+    """Return whether a fit is better.
+
+    Of two aliases that fit as well, the one nearer to the scene's ω² is better.
+    """
     if max(fit.residual, best.residual) < 1e-9 * size or 0.5 < fit.residual / best.residual < 2:
         distance = abs(fit.phasors.square - square)
         return distance < 0.99 * abs(best.phasors.square - square)
@@ -146,7 +158,7 @@ def _is_better(fit: PhasorFit, best: PhasorFit, square: float, size: float) -> b
 
 
 def as_angles(plane: ComplexArray, length: float) -> ComplexArray:
-    """Return x + iy with the distance from the vertical replaced by the angle of the cord times l."""
+    """Return x + iy, the distance from the vertical replaced by the angle of the cord times l."""
     radius = np.abs(plane)
     safe = np.where(radius > 0, radius, 1.0)
     arc = length * np.arcsin(np.clip(safe / length, 0, 1))
@@ -154,13 +166,13 @@ def as_angles(plane: ComplexArray, length: float) -> ComplexArray:
 
 
 def sinc(angle: Array) -> Array:
-    """Return sin(angle)/angle, which turns the cord's angle times l into the distance from the vertical."""
+    """Return sin(angle)/angle: the distance from the vertical over the cord's angle times l."""
     safe = np.where(angle > 0, angle, 1.0)
     return np.where(angle > 0, np.sin(safe) / safe, 1.0)
 
 
 def _guesses(times: Array, rows: ComplexArray, frequency: float) -> list[tuple[complex, complex]]:
-    """Return first values of γ1, γ2: by linear prediction if rows are evenly spaced, then the scene's own."""
+    """Return first values of γ1 and γ2: by linear prediction from even rows, then the scene's."""
     guesses = [(complex(frequency), complex(-frequency))]
     part = _longest_even_part(times)
     rows = rows[part]
@@ -215,7 +227,7 @@ def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -
     for count in sorted(counts):
         t = times[:count]
         w = rows[:count]
-        rates, norm = gauss_newton(partial(_residuals, t, w), rates, steps=STEPS, gain=GAIN)
+        rates, norm = gauss_newton(partial(_residuals, t, w), rates, steps=_STEPS, gain=_GAIN)
         if not math.isfinite(norm):
             return fit
         a, b, centre = solved(_basis(t, rates), w)
@@ -238,7 +250,7 @@ def _residuals(
 ) -> tuple[ComplexArray, Callable[[], ComplexArray]]:
     """Return the residuals of two phasors, and their slopes by the rates, then by A, B and C."""
     basis = _basis(times, rates)
-    if not np.isfinite(basis).all() or np.abs(basis).max() > OVERFLOW:
+    if not np.isfinite(basis).all() or np.abs(basis).max() > _OVERFLOW:
         return np.full_like(rows, np.nan), lambda: basis
     linear = solved(basis, rows)
 
@@ -299,9 +311,9 @@ class FixedStepMethod:
     def first_step(
         self, square: float, square_shown: float, drag: float, drag_shown: float
     ) -> float:
-        """Return the step in s with which the leading error gives an oscillator of ω² what rows show.
+        """Return an estimate of the step in s from its leading error, for an oscillator of ω².
 
-        It is 0 if there is none.
+        It is 0 if no step has such an effect.
         """
         if square <= 0:
             return 0.0

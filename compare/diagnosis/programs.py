@@ -1,9 +1,9 @@
-"""Programs: a scene's numbers as a program reads them, its choices, the resulting `theta`, and its motion.
+"""Programs: a scene's numbers as a program reads them, its choices, its `theta` and its motion.
 
 A `Program` has the scene's numbers and a handful of choices; each mistake changes one of them. The
 motion depends on the numbers of `theta` (`NAMES`), so that many programs are compared with one fit
-without running any. A `SphericalPendulum` runs a theta: it swings on the sphere with a free vector Ω
-and a free pull, whatever a program calls them.
+without running any. A `SphericalPendulum` runs a theta: it swings on the sphere with a free vector
+Ω and a free pull, whatever a program calls them.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ NAMES = (
     "point_mass",
 )
 # indices of the numbers with such a unit
-PER_SECOND = [0, 1, 2, 6, 9, 10]
-PER_SECOND_SQUARED = [3, 4, 5]
-HIGHEST = 12000.0  # m above or below the ellipsoid: no pendulum hangs farther away
+_PER_SECOND = [0, 1, 2, 6, 9, 10]
+_PER_SECOND_SQUARED = [3, 4, 5]
+_HIGHEST = 12000.0  # m above or below the ellipsoid: no pendulum hangs farther away
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,10 @@ class Program:
 
     @classmethod
     def of(cls, inputs: Inputs, start: Array) -> Program:
-        """Return the right program of a scene; `start` is x, y, z, vx, vy, vz at the release in m and m/s."""
+        """Return the right program of a scene.
+
+        `start` is x, y, z, vx, vy, vz at the release in m and m/s.
+        """
         x, y, _, vx, vy, _ = start.tolist()
         rate = float(inputs.rotation_rate)
         return cls(
@@ -141,7 +144,7 @@ class Program:
             and abs(self.latitude) <= 90
             and (reachable or self.kind == "linear")
             and self.radius >= 0
-            and abs(self.altitude) <= HIGHEST
+            and abs(self.altitude) <= _HIGHEST
             and self.step >= 0
             and math.isfinite(self.rate)
         )
@@ -153,7 +156,7 @@ class Program:
 
     @property
     def gradient_square(self) -> tuple[float, float, float, float]:
-        """xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, the centrifugal force's change along the swing, in 1/s²."""
+        """xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, the gradient of the centrifugal force, in 1/s²."""
         phi = math.radians(self.latitude)
         north = self.rate * math.cos(phi)
         up = self.rate * math.sin(phi)
@@ -192,10 +195,10 @@ class Program:
             ]
         )
         if self.pace != 1:
-            theta[PER_SECOND] *= self.pace
-            theta[PER_SECOND_SQUARED] *= self.pace**2
+            theta[_PER_SECOND] *= self.pace
+            theta[_PER_SECOND_SQUARED] *= self.pace**2
             theta[NAMES.index("gradient")] *= self.pace**2
-        theta[PER_SECOND_SQUARED] *= (1 + self.phase_gain) ** 2
+        theta[_PER_SECOND_SQUARED] *= (1 + self.phase_gain) ** 2
         theta[NAMES.index("drag")] += self.decay_rate
         return theta
 
@@ -228,8 +231,8 @@ class Program:
 
     def _release_velocity(self) -> tuple[float, float]:
         """Return vx and vy of the release in m/s."""
-        # a plane turned by hand has its own rate; else it is the Earth's, without a factor of the whole
-        # Coriolis force
+        # a plane turned by hand has its own rate; otherwise it is the Earth's, without a factor of
+        # the whole Coriolis force
         if self.turned_plane:
             _, rate = self._turn()
         else:
@@ -238,7 +241,7 @@ class Program:
         return self.vx + stars * self.y, self.vy - stars * self.x
 
     def _computed(self, theta: Array) -> Phasors:
-        """Return the two phasors that its rows show, with the effect of its integrator and its clock."""
+        """Return the two phasors that its rows show, the effect of its integrator included."""
         square = -theta[5]
         if self.turned_plane:
             square -= theta[2] ** 2
@@ -286,7 +289,10 @@ class Program:
 
 
 def phasors_of(theta: Array, square: float, start: complex) -> Phasors:
-    """Return the two phasors of a linear model with ω², the position at t = 0, and else the numbers of theta."""
+    """Return the two phasors of a linear model.
+
+    ω² and the position at t = 0 are given, all other numbers are those of theta.
+    """
     centre = complex(theta[3], theta[4]) * theta[11] / square if square else 0j
     return Phasors.of(theta[2], square, theta[6], centre, start, complex(theta[9], theta[10]))
 
@@ -352,9 +358,9 @@ class SphericalPendulum:
         )
 
     def start(self, theta: Array) -> Array:
-        """Return position and velocity of the release over the length, on the sphere below the suspension.
+        """Return position and velocity of the release on the sphere, over the length.
 
-        They are NaN where the cord does not reach it.
+        The release is below the suspension. They are NaN where the cord does not reach it.
         """
         x, y, vx, vy = theta[7:11]
         length = theta[11]

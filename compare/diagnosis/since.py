@@ -9,10 +9,10 @@ from typing import Any
 from .case import AS_IF
 from .thresholds import OF_A_CHANGE
 
-STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
-SAME = 1e-9  # relative difference of two inputs that count as one
-STEP = "step"
-Document = Mapping[str, Any]  # of a score, or of a convention or cause in it
+_STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
+_SAME = 1e-9  # relative difference of two inputs that count as one
+_STEP = "step"
+_Document = Mapping[str, Any]  # of a score, or of a convention or cause in it
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class Since:
         name: of the baseline.
         before_m: its largest position error in m, over the span that both have.
         after_m: that of the candidate.
-        apart_m: the largest distance in m between both, of a document the difference of their errors; 0 if it is no
-            more than rounding.
+        apart_m: the largest distance in m between both, or the difference of their errors if the
+            baseline is a document; 0 if it is no more than rounding.
         worse: what became worse by more than the tolerance; empty if nothing did.
         gains: what became better by more than the tolerance; empty if nothing did.
         changes: what came and what went.
@@ -75,12 +75,12 @@ class Since:
         return f"that explains all but {self.left_m:.2g} m"
 
 
-def _is_doubtful(deviation: Document) -> bool:
+def _is_doubtful(deviation: _Document) -> bool:
     """Return whether the motion is merely like that, or it is one of several."""
     return str(deviation["id"]).startswith(AS_IF) or "|" in deviation["id"]
 
 
-def _known(document: Document) -> Iterator[Document]:
+def _known(document: _Document) -> Iterator[_Document]:
     """Yield the conventions and causes of a document's candidate that are certain, and its slip."""
     for deviation in (*document["conventions"], *document["causes"]):
         if deviation["text"].startswith("your ") and not _is_doubtful(deviation):
@@ -99,19 +99,19 @@ class Version:
         error_m: over the span that both versions have.
     """
 
-    document: Document
+    document: _Document
     error_m: float
 
     @property
     def left_m(self) -> float:
-        """The error in m that remains once its causes are put right; the whole error if no cause is known."""
+        """The error in m that remains without its causes; the whole error if no cause is known."""
         return float((self.document["corrected"] or {"max_error_m": self.error_m})["max_error_m"])
 
 
 def explain_change(
     old: Version, new: Version, apart_m: float, most_m: float
 ) -> tuple[tuple[str, ...], float | None]:
-    """Return what came and what went, and what that leaves of both errors in m; None if nothing is known.
+    """Return what came and what went, and what that leaves of both errors in m; None if unknown.
 
     Args:
         old: the baseline.
@@ -129,7 +129,7 @@ def explain_change(
     return texts, left_m
 
 
-def _unexplained_m(old: Document, new: Document) -> float:
+def _unexplained_m(old: _Document, new: _Document) -> float:
     """Return how far in m doubtful numbers of only one of two documents may move the bob."""
     old_causes = [cause for cause in old["causes"] if _is_doubtful(cause)]
     new_causes = [cause for cause in new["causes"] if _is_doubtful(cause)]
@@ -147,12 +147,14 @@ def _changes(old: Version, new: Version, most_m: float) -> Iterator[str]:
     went = [deviation for deviation in before if _kind(deviation) not in kinds]
     for deviation in _visible(came, old.left_m, most_m):
         text = _changed(deviation, "now")
-        yield f"the step ({text})" if _kind(deviation) == STEP else text
+        yield f"the step ({text})" if _kind(deviation) == _STEP else text
     for deviation in _visible(went, new.left_m, most_m):
-        yield "the step" if _kind(deviation) == STEP else _changed(deviation, "no longer")
+        yield "the step" if _kind(deviation) == _STEP else _changed(deviation, "no longer")
 
 
-def _visible(deviations: Sequence[Document], hidden_m: float, most_m: float) -> Iterator[Document]:
+def _visible(
+    deviations: Sequence[_Document], hidden_m: float, most_m: float
+) -> Iterator[_Document]:
     """Yield the deviations of one version that the other would show.
 
     Args:
@@ -164,40 +166,40 @@ def _visible(deviations: Sequence[Document], hidden_m: float, most_m: float) -> 
     for deviation in deviations:
         if 0 < deviation["size_m"] <= hidden_m or deviation["size_m"] > most_m:
             continue
-        if deviation["id"] == "off_the_sphere" and STEP in kinds:
+        if deviation["id"] == "off_the_sphere" and _STEP in kinds:
             continue  # a step takes the bob off the sphere
         yield deviation
 
 
-def _changed(deviation: Document, when: str) -> str:
+def _changed(deviation: _Document, when: str) -> str:
     """Return the sentence on a deviation, about a program that does so now, or no longer."""
     text = deviation["text"].partition(" (--set")[0]  # which is advice for a verdict
     text = text.replace("your program", f"it {when}", 1)
     return str(text.replace("your file", f"its file {when}", 1))
 
 
-def _kind(deviation: Document) -> str:
+def _kind(deviation: _Document) -> str:
     """Return the word for a thing of which a program has one: a step, a gravity."""
     if deviation["id"].startswith("integrator_"):
-        return STEP
+        return _STEP
     if deviation["id"].startswith("gravity_"):
         return "site.gravity"
     return str(deviation["id"])
 
 
-def _is_in(deviation: Document, deviations: Sequence[Document]) -> bool:
+def _is_in(deviation: _Document, deviations: Sequence[_Document]) -> bool:
     """Return whether a deviation is one of several."""
     return any(_is_same(deviation, other) for other in deviations)
 
 
-def _is_same(deviation: Document, other: Document) -> bool:
+def _is_same(deviation: _Document, other: _Document) -> bool:
     """Return whether two conventions or causes say the same."""
     new_value = deviation.get("value")
     old_value = other.get("value")
     if new_value is None or old_value is None:
-        if _kind(deviation) == _kind(other) == STEP:
-            return bool(1 / STEPS < deviation["size_m"] / other["size_m"] < STEPS)
+        if _kind(deviation) == _kind(other) == _STEP:
+            return bool(1 / _STEPS < deviation["size_m"] / other["size_m"] < _STEPS)
         return bool(deviation["text"] == other["text"])
     uncertainty = sum(document.get("uncertainty") or 0.0 for document in (deviation, other))
-    same = abs(new_value - old_value) <= uncertainty + SAME * abs(new_value)
+    same = abs(new_value - old_value) <= uncertainty + _SAME * abs(new_value)
     return bool(deviation["id"] == other["id"] and same)

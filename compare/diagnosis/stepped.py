@@ -34,10 +34,10 @@ from .programs import Program, SphericalPendulum
 from .readings import CauseReading
 from .thresholds import NEEDED
 
-TITLES = {method.id: method.title for method in METHODS}
-TITLES["heun"] = TITLES["rk2"]
+_TITLES = {method.id: method.title for method in METHODS}
+_TITLES["heun"] = _TITLES["rk2"]
 # ωh: the shortest step that is tried
-FINEST = {
+_FINEST = {
     "semi_implicit_euler": 0.004,
     "semi_implicit_euler_drift": 0.004,
     "leapfrog": 0.004,
@@ -47,30 +47,29 @@ FINEST = {
     "rk4": 0.02,
 }
 # places of the stages after the first, weights of all stages
-RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+_RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "explicit_euler": ((), (1.0,)),
     "rk2": ((1 / 2,), (0.0, 1.0)),
     "heun": ((1.0,), (1 / 2, 1 / 2)),
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
 LONGEST = 15_000  # steps that are run; only the rows up to there are read
-FEWEST = 30  # rows that determine a motion; up to twice as many steps are run to reach them
-TRIED = 24  # numbers of steps that are run at a time
-LEAP = 4  # steps that are compiled as one
-WORTH = 4000  # steps from which compiling several as one pays
-SEARCHED = 8_000  # steps that are run at most while their number is unknown
-SWING = 1.5  # periods at the beginning from which the step is estimated
-LIKELY = 3  # steps that are tried on all rows
-PLAIN = (
-    0.3  # residual of the first swing, over that of an exact integration: most for a likely step
-)
-READINGS = 2  # how often the rows are read, the effect of the steps computed again in between
-STEP_LEFT = 1e-3  # of the effect of the steps: largest residual of steps that are right
-ALIKE = 10.0  # ratio of residuals: beyond that of the likeliest steps, others are not tried
-NEWTON = 2  # Gauss-Newton steps before any fixed step is tried
+_FEWEST = 30  # rows that determine a motion; up to twice as many steps are run to reach them
+_TRIED = 24  # numbers of steps that are run at a time
+_LEAP = 4  # steps that are compiled as one
+_WORTH = 4000  # steps from which compiling several as one pays
+_SEARCHED = 8_000  # steps that are run at most while their number is unknown
+_SWING = 1.5  # periods at the beginning from which the step is estimated
+_LIKELY = 3  # steps that are tried on all rows
+# the largest residual of a likely step in the first swing, over that of an exact integration
+_PLAIN = 0.3
+_READINGS = 2  # how often the rows are read, the effect of the steps computed again in between
+_STEP_LEFT = 1e-3  # of the effect of the steps: largest residual of steps that are right
+_ALIKE = 10.0  # ratio of residuals: beyond that of the likeliest steps, others are not tried
+_NEWTON = 2  # Gauss-Newton steps before any fixed step is tried
 # indices of theta that are fitted together with a step: turn, pull, drag, place of the release
-UNSURE = [2, 3, 4, 5, 6, 7, 8]
-State = list[Any]
+_UNSURE = [2, 3, 4, 5, 6, 7, 8]
+_State = list[Any]
 
 
 @dataclass(frozen=True)
@@ -78,7 +77,7 @@ class Steps(SphericalPendulum):
     """A pendulum that a fixed-step method moves, with a whole number of steps from row to row.
 
     Attributes:
-        method: a word of `FINEST`.
+        method: a word of `_FINEST`.
         steps_per_row: number of steps from row to row.
         spacing_s: time from row to row.
         guess: the theta with which it meets the first swing; empty if unknown.
@@ -99,7 +98,7 @@ class Steps(SphericalPendulum):
     def title(self) -> tuple[str, str]:
         """The word of its method, and the name that people use."""
         word = "rk2" if self.method == "heun" else self.method
-        return word, TITLES[self.method]
+        return word, _TITLES[self.method]
 
     def exact(self, theta: Array, times: Array) -> Array:
         """Return x and y in m of an exact integration, shape (times, 2)."""
@@ -150,7 +149,7 @@ class Steps(SphericalPendulum):
         step_counts, first = np.unique(np.sort(steps_to_row, axis=None), return_index=True)
         reached = np.split(np.argsort(steps_to_row, axis=None), first[1:])
 
-        leap = LEAP if step_counts[-1] >= WORTH else 1
+        leap = _LEAP if step_counts[-1] >= _WORTH else 1
         one_step = _compiled_steps(self.method, 1)
         leap_of_steps = _compiled_steps(self.method, leap)
         done = 0
@@ -187,9 +186,9 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     program = None if reading is None else reading.program
     explanations = []
     for steps in likely_steps(replace(flat, right=right), program):
-        longest = max(LONGEST, min(FEWEST * steps.steps_per_row, 2 * LONGEST))
+        longest = max(LONGEST, min(_FEWEST * steps.steps_per_row, 2 * LONGEST))
         count = int((rows.times <= steps.step_s * longest).sum())
-        if count < FEWEST:
+        if count < _FEWEST:
             continue
         explanation = _explanation_with(flat.part(count), steps)
         if explanation is None:
@@ -236,9 +235,9 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     motion = _SteppedMotion.of(steps, fit.theta, rows.times)
     best: Hypothesis | None = None
     readings: list[CauseReading] = []
-    for _ in range(READINGS):
+    for _ in range(_READINGS):
         residual_m = rms(rows.positions - motion.rows)
-        if not residual_m <= max(case.floor, STEP_LEFT * rms(motion.effect)):
+        if not residual_m <= max(case.floor, _STEP_LEFT * rms(motion.effect)):
             return None
         if best is not None and residual_m <= case.floor:
             break
@@ -266,7 +265,7 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
 
 
 def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:
-    """Return the cause that a program takes some steps; `effect` is what they do to its rows, in m."""
+    """Return the cause that a program takes some steps; they move its rows by `effect` in m."""
     word, title = steps.title
     step_s = steps.step_s
     text = f"integrates with {title} at a step of {step_s:.3g} s"
@@ -296,23 +295,23 @@ def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
         return []
     pendulum, right = case.pendulum_of(case.right)
     theta = right
-    for _ in range(NEWTON):
+    for _ in range(_NEWTON):
         theta, slopes = _improved(swing, pendulum, theta)
     thetas = np.column_stack([right, theta])
 
     candidates: list[_Candidate] = []
-    for method in FINEST:
+    for method in _FINEST:
         steps = Steps(**vars(pendulum), method=method, spacing_s=float(case.rows.times[1]))
-        finest = int(steps.spacing_s * case.frequency / FINEST[method])
+        finest = int(steps.spacing_s * case.frequency / _FINEST[method])
         low = 1
-        high = min(finest, SEARCHED // (len(swing.rows.times) - 1))
+        high = min(finest, _SEARCHED // (len(swing.rows.times) - 1))
         expected = _steps_per_row(program, method, steps.spacing_s)
         if 0 < expected <= finest:
             expected_steps = replace(steps, steps_per_row=expected, guess=tuple(theta))
             candidates.append(_Candidate(0.0, expected_steps))
             if expected > high:
-                low = expected - TRIED // 4
-                high = min(finest, expected + TRIED // 4)
+                low = expected - _TRIED // 4
+                high = min(finest, expected + _TRIED // 4)
         candidates += _closest(swing, steps, thetas, slopes, low, high)
 
     candidates.sort(key=lambda candidate: candidate.residual_m)
@@ -320,8 +319,8 @@ def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
     least_m = next((size for size in sizes if size), 0.0)
     exact_rows = pendulum.rows(theta, swing.rows.times, 2)
     plain_m = float(np.linalg.norm(swing.rows.positions - exact_rows))
-    most_m = min(PLAIN * plain_m, ALIKE * least_m)
-    return [candidate.steps for candidate in candidates[:LIKELY] if candidate.residual_m < most_m]
+    most_m = min(_PLAIN * plain_m, _ALIKE * least_m)
+    return [candidate.steps for candidate in candidates[:_LIKELY] if candidate.residual_m < most_m]
 
 
 def _first_swing(case: FileCase) -> FileCase | None:
@@ -330,7 +329,7 @@ def _first_swing(case: FileCase) -> FileCase | None:
     if len(times) < 8 or times[0] != 0 or not frequency:
         return None
     spacing_s = float(times[1])
-    count = max(10, math.ceil(SWING * 2 * math.pi / frequency / spacing_s))
+    count = max(10, math.ceil(_SWING * 2 * math.pi / frequency / spacing_s))
     spacings = times / spacing_s
     if not np.abs(spacings - np.round(spacings)).max() < 1e-6 * times[-1] / spacing_s:
         return None
@@ -347,15 +346,15 @@ def _steps_per_row(program: Program | None, method: str, spacing_s: float) -> in
 
 
 def _improved(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tuple[Array, Array]:
-    """Return theta after a Gauss-Newton step of its unsure numbers, and the slopes by these in scales."""
+    """Return theta after a Gauss-Newton step of its unsure numbers, and the slopes by these."""
     times = swing.rows.times
     all_slopes = pendulum.slopes(theta, times, 2, swing.scales, np.full(len(theta), 1e-6))
-    slopes = all_slopes[:, UNSURE]
+    slopes = all_slopes[:, _UNSURE]
     residuals = (swing.rows.positions - pendulum.rows(theta, times, 2)).ravel()
     if not (np.isfinite(slopes).all() and np.isfinite(residuals).all()):
         return theta, np.zeros((len(residuals), 0))
     improved = theta.copy()
-    improved[UNSURE] += swing.scales[UNSURE] * best_change(slopes, residuals)
+    improved[_UNSURE] += swing.scales[_UNSURE] * best_change(slopes, residuals)
     return improved, slopes
 
 
@@ -369,7 +368,7 @@ def _closest(
     """
     settled = False
     while low <= high:
-        steps_per_row = np.unique(np.geomspace(low, high, TRIED).round().astype(np.int64))
+        steps_per_row = np.unique(np.geomspace(low, high, _TRIED).round().astype(np.int64))
         norms_m = _residual_norms(swing, steps, thetas, slopes, steps_per_row)
         smallest = np.argmin(np.where(np.isfinite(norms_m), norms_m, np.inf))
         which, best = divmod(int(smallest), len(steps_per_row))
@@ -423,7 +422,7 @@ def _compiled_steps(method: str, count: int) -> Any:
     The state is over l; the parameters are h, pull, turn, centrifugal force's gradient, drag.
     """
 
-    def change(state: State, parameters: State) -> State:
+    def change(state: _State, parameters: _State) -> _State:
         k = Constants(
             pull=tuple(parameters[1:4]),
             turn=tuple(parameters[4:7]),
@@ -437,16 +436,16 @@ def _compiled_steps(method: str, count: int) -> Any:
     return compiled(("x", "y", "z", "vx", "vy", "vz"), 12, change)
 
 
-def _stepped(method: str, state: State, h: Any, k: Constants) -> State:
+def _stepped(method: str, state: _State, h: Any, k: Constants) -> _State:
     """Return position and velocity after one step."""
 
-    def rates(state: State) -> State:
+    def rates(state: _State) -> _State:
         return [*state[3:], *acceleration(tuple(state[:3]), tuple(state[3:]), k)]
 
-    def kicked(state: State, h: Any) -> State:
+    def kicked(state: _State, h: Any) -> _State:
         return [*state[:3], *_moved(state[3:], h, rates(state)[3:])]
 
-    def drifted(state: State, h: Any) -> State:
+    def drifted(state: _State, h: Any) -> _State:
         return [*_moved(state[:3], h, state[3:]), *state[3:]]
 
     if method == "semi_implicit_euler":
@@ -456,7 +455,7 @@ def _stepped(method: str, state: State, h: Any, k: Constants) -> State:
     if method == "leapfrog":
         return kicked(drifted(kicked(state, h / 2), h), h / 2)
 
-    places, weights = RUNGE_KUTTA[method]
+    places, weights = _RUNGE_KUTTA[method]
     stages = [rates(state)]
     for place in places:
         stages.append(rates(_moved(state, place * h, stages[-1])))
@@ -466,6 +465,6 @@ def _stepped(method: str, state: State, h: Any, k: Constants) -> State:
     return state
 
 
-def _moved(values: Sequence[Any], h: Any, rates: Sequence[Any]) -> State:
+def _moved(values: Sequence[Any], h: Any, rates: Sequence[Any]) -> _State:
     """Return values + h * rates."""
     return [value + h * rate for value, rate in zip(values, rates, strict=True)]

@@ -1,4 +1,4 @@
-"""Experiments with a program that is run again: what they change, which its command allows, and what they found."""
+"""Experiments with a program that is run again: changes, which a command allows, and findings."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from reference.numbers.precision import DOUBLE
 
 from ...candidates.external import SETTING, placeholders
 
-PUSH = 0.2  # of the rate of the swing: the rate round the vertical that is added to the release
+_PUSH = 0.2  # of the rate of the swing: the rate round the vertical that is added to the release
 # fields of a scene that make its swing wide
-SWING = (
+_SWING = (
     "release.x",
     "release.y",
     "release.vx",
@@ -27,11 +27,11 @@ SWING = (
     "release.angle_rate",
     "release.azimuth_rate",
 )
-ADVICE = (
-    "Add {rotation_rate}, {latitude}, {gravity}, {length}, {x0} {y0}, {vx0} {vy0}, {t_end} or {setting}, "
-    "and have the program use them."
+_ADVICE = (
+    "Add {rotation_rate}, {latitude}, {gravity}, {length}, {x0} {y0}, {vx0} {vy0}, {t_end} or "
+    "{setting}, and have the program use them."
 )
-Values = Callable[[Scene], dict[str, str]]
+_Values = Callable[[Scene], dict[str, str]]
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,14 @@ class Experiment:
         id: a stable word, and the name of the file that is kept.
         title: what is changed.
         values: returns the fields of a scene with their changed values.
-        where: where the mistake is, if the error vanishes with the change; "" if that does not show it.
+        where: where the mistake is, if the error vanishes with the change; "" if that shows
+            nothing.
         finer: number by which {setting} is divided.
     """
 
     id: str
     title: str
-    values: Values
+    values: _Values
     where: str = ""
     finer: int = 1
 
@@ -57,7 +58,7 @@ class Experiment:
         return scene.with_values(f"{field}={value}" for field, value in self.values(scene).items())
 
 
-def _times(factor: str, *fields: str) -> Values:
+def _times(factor: str, *fields: str) -> _Values:
     """Return a change that multiplies fields of a scene by a factor."""
 
     def values(scene: Scene) -> dict[str, str]:
@@ -80,7 +81,7 @@ def _pushed(scene: Scene) -> dict[str, str]:
     """Return the velocity of the release, pushed round the vertical."""
     release = scene.release
     start = Start.of(scene.exact, DOUBLE.prec)
-    rate = PUSH * start.fastest_rate
+    rate = _PUSH * start.fastest_rate
     if release.angle is not None:
         turn = Decimal(release.azimuth_rate or "0") + Decimal(f"{math.degrees(rate):.3g}")
         return {"release.azimuth_rate": str(turn)}
@@ -92,7 +93,7 @@ def _pushed(scene: Scene) -> dict[str, str]:
     return {"release.vx": str(vx), "release.vy": str(vy)}
 
 
-EXPERIMENTS = (
+_EXPERIMENTS = (
     Experiment("half_step", "half the step", lambda _: {}, finer=2),
     Experiment("quarter_g", "a quarter of g", _times("0.25", "site.gravity")),
     Experiment(
@@ -104,7 +105,7 @@ EXPERIMENTS = (
     Experiment(
         "small_swing",
         "a swing a hundredth as wide",
-        _times("0.01", *SWING),
+        _times("0.01", *_SWING),
         "in what a wide swing does",
     ),
     Experiment("pushed", "the release pushed", _pushed),
@@ -112,7 +113,7 @@ EXPERIMENTS = (
     Experiment("pole", "the pole", _pole, "in what the latitude does"),
     Experiment("short_span", "half the span", _times("0.5", "run.t_end")),
 )
-MOST_RUNS = len(EXPERIMENTS)
+MOST_RUNS = len(_EXPERIMENTS)
 
 
 @dataclass(frozen=True)
@@ -147,7 +148,8 @@ class Experiments:
 
     Attributes:
         runs: in their order.
-        measured: ids of the causes that make all files: of no explanation, one, or several that no run told apart.
+        measured: ids of the causes that explain all files: of no explanation, of one, or of several
+            that no run distinguishes.
         text: what follows from all runs.
     """
 
@@ -174,7 +176,7 @@ def possible(scene: Scene, command: str) -> list[Experiment]:
     words = set(re.findall(r"(?<!\{)\{(\w+)\}", command))
     given = placeholders(scene)
     experiments = []
-    for experiment in EXPERIMENTS:
+    for experiment in _EXPERIMENTS:
         try:
             values = placeholders(experiment.changed(scene))
         except FoucaultError:  # such a scene is impossible: twice its swing goes over the top
@@ -185,7 +187,7 @@ def possible(scene: Scene, command: str) -> list[Experiment]:
             experiments.append(experiment)
     if not experiments:
         expected = "a command with a placeholder that an experiment can change"
-        raise InputError("--experiments", command, expected, ADVICE)
+        raise InputError("--experiments", command, expected, _ADVICE)
     return experiments
 
 

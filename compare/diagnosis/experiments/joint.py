@@ -1,8 +1,8 @@
 """The explanations of several runs together: causes, and the way in which each follows the scene.
 
-One file does not show whether a program takes g to be 9.81, or 1.0003 times what it is given, or has
-a fast clock. In a scene with another g these are different motions. So the rows of all runs are put together, and read
-like those of one file.
+One file does not show whether a program takes g to be 9.81, or 1.0003 times what it is given, or
+has a fast clock. In a scene with another g these are different motions. So the rows of all runs are
+put together, and read like those of one file.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from ..readings import CauseReading
 from ..stepped import LONGEST, Steps, step_cause
 
 # how a cause follows the scene; the end of its sentence
-RULE = ""
+_RULE = ""
 TYPED = ", whatever it is given"
 FACTOR = ", in proportion to what it is given"
 # numbers that a scene, or {setting}, gives
-INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
+_INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
 # relative error of the leading error of a step, over the square of the swing's angle
-WIDE = 2.0
-WHOLE = 1e-3  # of a number of steps: how far it may be from a whole number
-TRIED = 30  # readings of a family that are run
+_WIDE = 2.0
+_WHOLE = 1e-3  # of a number of steps: how far it may be from a whole number
+_TRIED = 30  # readings of a family that are run
 EQUAL = 0.35  # decades by which a reading that explains all files may be dearer than the cheapest
 
 
@@ -64,7 +64,10 @@ class Trial:
 
     @cached_property
     def causes(self) -> dict[tuple[str, str, int], Cause]:
-        """The mistakes that a program of its scene may have, by family, id, and index among those of one id."""
+        """The mistakes that a program of its scene may have.
+
+        The keys are the family, the id, and the index among those of one id.
+        """
         causes = {}
         counters = defaultdict[tuple[str, str], Iterator[int]](count)
         for kind in ("sphere", *MODELS):
@@ -86,9 +89,9 @@ class FollowedCause(NamedTuple):
     way: str
 
     def applied(self, program: Program, value: float, first: Trial, trial: Trial) -> Program:
-        """Return the program of a trial's scene with it; `value` is its number in the first scene."""
-        if self.way == RULE:
-            # a cause that the scene does not have, such as the sign of no rotation, does nothing there
+        """Return a trial's program with the cause; `value` is its number in the first scene."""
+        if self.way == _RULE:
+            # a cause that the scene does not have, such as the sign of no rotation, changes nothing
             cause = trial.causes.get(self.key)
             return program if cause is None else cause.change(program)
         program = self.cause.change(program)
@@ -136,7 +139,7 @@ class Joint(Program):
 
 @dataclass(frozen=True)
 class JointCase(FileCase):
-    """The rows of all runs as those of one file, each in units of its largest permitted residual."""
+    """The rows of all runs as those of one file, weighted by their largest permitted residuals."""
 
     runs: tuple[Trial, ...] = ()
 
@@ -193,9 +196,9 @@ class JointCase(FileCase):
         for key, cause in self.runs[0].causes.items():
             if key[0] != kind:
                 continue
-            varied = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
+            varied = cause.free in _INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
             if not cause.free:
-                ways = [RULE, TYPED]
+                ways = [_RULE, TYPED]
             else:
                 ways = [TYPED, FACTOR] if varied else [TYPED]
             causes += [_following(FollowedCause(key, cause, way), varied) for way in ways]
@@ -211,7 +214,7 @@ class JointCase(FileCase):
         finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
         readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
         readings = [
-            polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)
+            polished(self, reading) for reading in ranked(self, readers, self.causes, _TRIED)
         ]
         explaining = [reading for reading in readings if self.off(reading) <= most]
         return sorted(explaining, key=lambda reading: reading.score)
@@ -231,7 +234,7 @@ class JointCase(FileCase):
     def without_steps(
         self, steps: Steps, way: str, reading: CauseReading | None = None
     ) -> tuple[JointCase, Deviation]:
-        """Return the case with the effect of steps subtracted from the rows, and the cause that they are.
+        """Return the case with the effect of steps subtracted from its rows, and their cause.
 
         Args:
             steps: of the first run.
@@ -257,7 +260,7 @@ class JointCase(FileCase):
         return JointCase.of(runs), causes[0]
 
     def explanation_of(self, reading: CauseReading, *besides: Deviation) -> Explanation:
-        """Return the explanation of the first run by a reading, and by what was subtracted from its rows."""
+        """Return the explanation of the first run by a reading, and what was subtracted before."""
         assert isinstance(reading.program, Joint)
         case = self.runs[0].case
         program = reading.program.programs[0]
@@ -292,18 +295,18 @@ def _block_diagonal(blocks: Sequence[Array]) -> Array:
 
 
 def _error_of_effect_m(case: FileCase, program: Program, positions: Array) -> float:
-    """Return an estimate of how far the leading error of a step on the sphere is from the whole error."""
+    """Return an estimate of the difference between the leading and the whole error of a step."""
     exact = case.positions(replace(program, method=None, step=0.0))
     width = float(np.hypot(*case.rows.plane.T).max()) / case.right.length
-    return WIDE * width**2 * largest(positions - exact)
+    return _WIDE * width**2 * largest(positions - exact)
 
 
 def _by_order(cause: Deviation, spacing: float, method: FixedStepMethod | None) -> Deviation:
-    """Return a cause; of a step that does not divide the spacing of the rows, only the measured order."""
+    """Return a cause; if a step does not divide the rows' spacing, only its measured order."""
     if cause.stage != "integrator" or not cause.value or method is None:
         return cause
     count = spacing / cause.value
-    if abs(count - round(count)) <= WHOLE * count:
+    if abs(count - round(count)) <= _WHOLE * count:
         return cause
     way = next((way for way in (TYPED, FACTOR) if cause.text.endswith(way)), "")
     smaller = f"half the step, a {2**method.order}th of the error"
@@ -313,7 +316,10 @@ def _by_order(cause: Deviation, spacing: float, method: FixedStepMethod | None) 
 
 
 def _following(part: FollowedCause, varied: bool) -> Cause:
-    """Return a cause that changes the programs of all runs; if the runs varied its number, its text says how."""
+    """Return a cause that changes the programs of all runs.
+
+    If the runs varied its number, its text says how it follows them.
+    """
 
     def change(program: Program) -> Program:
         changed = part.cause.change(program)
