@@ -417,12 +417,12 @@ def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
 
 
 @dataclass(frozen=True)
-class _Passage:
+class _ReleasePassage:
     """A time at which the fitted motion passes near the release.
 
     Attributes:
         distance_m: from the release, that of the velocity included.
-        parts: time of it, in parts of a row.
+        parts: the time, in parts of a row.
         rows: in the order that was fitted.
     """
 
@@ -441,7 +441,7 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
     start = as_angles(np.array([complex(release[0], release[1])]), length)[0]
     speed = complex(release[3], release[4])
     spacing_s = float(np.median(np.diff(rows.times)))
-    passages: list[_Passage] = []
+    passages: list[_ReleasePassage] = []
     for ordered in (rows, _reversed(rows)):
         plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
         fit = fit_phasors(ordered.times, plane, frequency)
@@ -450,7 +450,7 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
         for parts in range(-_SHIFTS * _PARTS, _SHIFTS * _PARTS + 1):
             motion = fit.phasors.later(parts * spacing_s / _PARTS)
             distance = abs(motion.start - start) + abs(motion.speed - speed) / frequency
-            passages.append(_Passage(float(distance), parts, ordered))
+            passages.append(_ReleasePassage(float(distance), parts, ordered))
     if not passages:
         return rows
     # of equal ones, the smallest shift
@@ -459,15 +459,23 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
         return rows
 
     shift_s = best.parts * spacing_s / _PARTS
-    corrected = best.rows
-    if best.parts:
-        count = abs(best.parts)
-        late = "one row" if count == _PARTS else f"{Fraction(count, _PARTS)} rows"
-        side = "ahead of" if best.parts > 0 else "behind"
-        text = f"has its clock {side} its rows by {late} ({abs(shift_s):.6g} s)"
-        word = "rows_late" if best.parts < 0 else "rows_early"
-        size = abs(start) * min(2.0, frequency * abs(shift_s))
-        corrected = corrected.changed(Deviation(word, text, float(size)))
-    times = corrected.times - shift_s
+    size_m = abs(start) * min(2.0, frequency * abs(shift_s))
+    return _from_release(best, shift_s, float(size_m))
+
+
+def _from_release(passage: _ReleasePassage, shift_s: float, size_m: float) -> FileRows:
+    """Return the rows from a passage of the release on, their clock shifted to 0 there.
+
+    `size_m` is the effect of the shift.
+    """
+    rows = passage.rows
+    if passage.parts:
+        count = abs(passage.parts)
+        distance = "one row" if count == _PARTS else f"{Fraction(count, _PARTS)} rows"
+        side = "ahead of" if passage.parts > 0 else "behind"
+        text = f"has its clock {side} its rows by {distance} ({abs(shift_s):.6g} s)"
+        word = "rows_late" if passage.parts < 0 else "rows_early"
+        rows = rows.changed(Deviation(word, text, size_m))
+    times = rows.times - shift_s
     kept = times >= 0
-    return replace(corrected, times=times[kept], positions=corrected.positions[kept], starts=True)
+    return replace(rows, times=times[kept], positions=rows.positions[kept], starts=True)

@@ -247,6 +247,7 @@ class _WindowFit:
         One more step is taken once the residual is rounding: before it, numbers that the rows
         hardly determine are those of the guess, and of chance.
         """
+        # one loop whose state is shared by all its branches
         noise = self.case.resolution
         root = math.sqrt(len(self.case.rows.times))
         damping = list(_DAMPING)

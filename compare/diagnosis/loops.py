@@ -149,7 +149,7 @@ class LinearSteps(SphericalPendulum):
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _LoopFit:
     """Steps with the theta that fits best, and the root mean square in m that they leave."""
 
     steps: LinearSteps
@@ -209,10 +209,10 @@ class _Search:
     phasors: Phasors
     free: tuple[int, ...]
 
-    def best(self, order: str) -> _Fit:
+    def best(self, order: str) -> _LoopFit:
         """Return the fit of an order of statements with the number of steps that leaves least."""
         case = self.case
-        fits: dict[int, _Fit] = {}
+        fits: dict[int, _LoopFit] = {}
         low = 1
         high = max(1, int(float(case.rows.times[1]) * case.frequency / _FINEST))
         while True:
@@ -231,7 +231,7 @@ class _Search:
             if high - low < len(counts) and all(count in fits for count in range(low, high + 1)):
                 return fits[best]
 
-    def _fitted(self, order: str, steps_per_row: int) -> _Fit:
+    def _fitted(self, order: str, steps_per_row: int) -> _LoopFit:
         """Return the steps of an order of statements, with the numbers of theta that fit best."""
         rows = self.case.rows
         free = [*self.free]
@@ -258,4 +258,4 @@ class _Search:
         model = by_differences(rows_with, rows.plane.ravel(), np.full(len(free), 1e-6))
         numbers, norm_m = gauss_newton(model, theta[free] / scales, steps=_NEWTON, gain=_GAIN)
         guess = tuple(theta_with(numbers).tolist())
-        return _Fit(replace(steps, guess=guess), norm_m / math.sqrt(len(rows.times)))
+        return _LoopFit(replace(steps, guess=guess), norm_m / math.sqrt(len(rows.times)))

@@ -322,7 +322,8 @@ class FixedStepMethod:
         growth = (drag - drag_shown) / omega
         # (ωh)^order, from the leading error of the frequency or of the amplitude
         if not self.coefficients:
-            power, order = 12 * excess, 2
+            order = 2
+            power = 12 * excess
         else:
             order = len(self.coefficients) - 1
             power = {1: growth, 2: 3 * excess, 3: -12 * growth, 4: -60 * excess}[order]
@@ -330,6 +331,7 @@ class FixedStepMethod:
 
     def _split(self, phasors: Phasors, step: float) -> Phasors:
         """Return the modes of one step of w'' = -d w' - q w about the centre, d and q complex."""
+        # one formula: the eigenvalues of a step's matrix, with the letters of the equation
         q = phasors.square
         d = -1j * (phasors.rates[0] + phasors.rates[1])
         start = phasors.start - phasors.centre

@@ -69,14 +69,18 @@ def slip(rows: FileRows, scene: Scene) -> str:
         return ""
 
     sentences = "; ".join(term.sentence for term in terms)
-    power = np.mean(np.sum(errors * state[2:], axis=0))
-    speed = float(np.sqrt(np.mean(state[2:] ** 2)))
     work = ""
-    if abs(power) > _WORK * 2 * size * speed:
+    if _does_work(errors, state[2:]):
         work = " The difference does work, as no Coriolis force does."
     reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
     difference = f"differ from the model's{reading} by {size:.2g} m/s²"
     return f"Its accelerations {difference}: {sentences}.{work}"
+
+
+def _does_work(errors: Array, velocities: Array) -> bool:
+    """Return whether errors of the accelerations do work along the motion."""
+    power = np.mean(np.sum(errors * velocities, axis=0))
+    return bool(abs(power) > _WORK * 2 * _rms(errors) * _rms(velocities))
 
 
 def _rms(values: Array) -> float:
@@ -85,7 +89,7 @@ def _rms(values: Array) -> float:
 
 
 @dataclass(frozen=True)
-class _Motion:
+class _MotionOfRows:
     """The motion that rows show.
 
     Attributes:
@@ -99,7 +103,7 @@ class _Motion:
     error: float
 
 
-def _differentiated(times: Array, plane: Array, swing_rate: float) -> _Motion | None:
+def _differentiated(times: Array, plane: Array, swing_rate: float) -> _MotionOfRows | None:
     """Return the motion of evenly spaced rows by numerical differentiation.
 
     None if rows are too few, not evenly spaced, or too far apart for the scene's motion or their
@@ -119,7 +123,7 @@ def _differentiated(times: Array, plane: Array, swing_rate: float) -> _Motion | 
     if h * h * _rms(accelerations) > _rms(plane):  # the bob turns back from row to row
         return None
     state = np.vstack([plane[3:-3].T, velocities])
-    return _Motion(state, accelerations, _rms(accelerations - coarse))
+    return _MotionOfRows(state, accelerations, _rms(accelerations - coarse))
 
 
 def _convolved(plane: Array, stencil: Array) -> Array:
@@ -192,14 +196,14 @@ def _fewest_coefficients(basis: Array, errors: Array) -> dict[tuple[int, int], f
 
 
 @dataclass(frozen=True)
-class _Fit:
+class _TermFit:
     """The sum of squares that some terms leave, and their coefficients by equation and term."""
 
     residual: float
     coefficients: dict[tuple[int, int], float]
 
 
-def _fit(basis: Array, errors: Array, places: list[tuple[int, int]]) -> _Fit:
+def _fit(basis: Array, errors: Array, places: list[tuple[int, int]]) -> _TermFit:
     """Return the fit of errors by the terms at some places."""
     residual = 0.0
     coefficients: dict[tuple[int, int], float] = {}
@@ -209,7 +213,7 @@ def _fit(basis: Array, errors: Array, places: list[tuple[int, int]]) -> _Fit:
         for j, coefficient in zip(terms, solution, strict=True):
             coefficients[i, j] = float(coefficient)
         residual += float(np.sum((values - solution @ basis[terms]) ** 2))
-    return _Fit(residual, coefficients)
+    return _TermFit(residual, coefficients)
 
 
 def _alike(terms: list[_Term]) -> bool:

@@ -134,6 +134,7 @@ class Steps(SphericalPendulum):
             steps_per_row: number of steps from row to row, for each column.
             count: index of the last row.
         """
+        # one function, because all steps are a loop over arrays that are prepared before it
         constants = [self.constants(theta) for theta in thetas.T]
         parameters = np.array(
             [[0.0, *k.pull, *k.turn, *k.centrifugal, k.drag] for k in constants]
@@ -290,52 +291,96 @@ def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
         program: its step is tried first. If rows are too far apart for all steps to be tried,
             steps near its own are tried, or the shortest steps are left out.
     """
-    swing = _first_swing(case)
+    swing = _FirstSwing.of(case)
     if swing is None:
         return []
-    pendulum, right = case.pendulum_of(case.right)
-    theta = right
-    for _ in range(_NEWTON):
-        theta, slopes = _improved(swing, pendulum, theta)
-    thetas = np.column_stack([right, theta])
-
     candidates: list[_Candidate] = []
     for method in _FINEST:
-        steps = Steps(**vars(pendulum), method=method, spacing_s=float(case.rows.times[1]))
-        finest = int(steps.spacing_s * case.frequency / _FINEST[method])
-        low = 1
-        high = min(finest, _SEARCHED // (len(swing.rows.times) - 1))
-        expected = _steps_per_row(program, method, steps.spacing_s)
-        if 0 < expected <= finest:
-            expected_steps = replace(steps, steps_per_row=expected, guess=tuple(theta))
-            candidates.append(_Candidate(0.0, expected_steps))
-            if expected > high:
-                low = expected - _TRIED // 4
-                high = min(finest, expected + _TRIED // 4)
-        candidates += _closest(swing, steps, thetas, slopes, low, high)
-
+        candidates += _candidates(swing, method, program)
     candidates.sort(key=lambda candidate: candidate.residual_m)
     sizes = [candidate.residual_m for candidate in candidates]
     least_m = next((size for size in sizes if size), 0.0)
-    exact_rows = pendulum.rows(theta, swing.rows.times, 2)
-    plain_m = float(np.linalg.norm(swing.rows.positions - exact_rows))
-    most_m = min(_PLAIN * plain_m, _ALIKE * least_m)
-    return [candidate.steps for candidate in candidates[:_LIKELY] if candidate.residual_m < most_m]
+    most_m = min(_PLAIN * swing.exact_residual_m, _ALIKE * least_m)
+    likeliest = candidates[:_LIKELY]
+    return [candidate.steps for candidate in likeliest if candidate.residual_m < most_m]
 
 
-def _first_swing(case: FileCase) -> FileCase | None:
-    """Return the first rows, evenly spaced from the release on; None if the rows are not."""
-    times, frequency = case.rows.times, case.frequency
-    if len(times) < 8 or times[0] != 0 or not frequency:
+@dataclass(frozen=True)
+class _FirstSwing:
+    """The first rows, evenly spaced from the release on, and the exact integration that fits them.
+
+    Attributes:
+        case: the first rows.
+        pendulum: runs theta.
+        right: theta of a right program.
+        theta: that fits the rows best without fixed steps.
+        slopes: d rows / d theta by its unsure numbers, in scales.
+    """
+
+    case: FileCase
+    pendulum: SphericalPendulum
+    right: Array
+    theta: Array
+    slopes: Array
+
+    @classmethod
+    def of(cls, case: FileCase) -> _FirstSwing | None:
+        """Return the first swing of a case; None if its rows are not evenly spaced."""
+        first = _first_rows(case)
+        if first is None:
+            return None
+        pendulum, right = case.pendulum_of(case.right)
+        theta = right
+        for _ in range(_NEWTON):
+            theta, slopes = _improved(first, pendulum, theta)
+        return cls(first, pendulum, right, theta, slopes)
+
+    @property
+    def spacing_s(self) -> float:
+        """Time from row to row."""
+        return float(self.case.rows.times[1])
+
+    @property
+    def exact_residual_m(self) -> float:
+        """Norm of what theta leaves without fixed steps."""
+        rows = self.case.rows
+        return float(np.linalg.norm(rows.positions - self.pendulum.rows(self.theta, rows.times, 2)))
+
+
+def _first_rows(case: FileCase) -> FileCase | None:
+    """Return the rows of the first swing; None if rows are not evenly spaced from the release on."""
+    times = case.rows.times
+    if len(times) < 8 or times[0] != 0 or not case.frequency:
         return None
     spacing_s = float(times[1])
-    count = max(10, math.ceil(_SWING * 2 * math.pi / frequency / spacing_s))
+    count = max(10, math.ceil(_SWING * 2 * math.pi / case.frequency / spacing_s))
     spacings = times / spacing_s
     if not np.abs(spacings - np.round(spacings)).max() < 1e-6 * times[-1] / spacing_s:
         return None
     if len(times) <= count or abs(spacings[count] - count) > 1e-6:
         return None
     return case.part(count + 1)
+
+
+def _candidates(swing: _FirstSwing, method: str, program: Program | None) -> list[_Candidate]:
+    """Return the steps of a method that may have made the first swing.
+
+    They are the number of steps that leaves least, with its neighbours, and a program's own number.
+    """
+    steps = Steps(**vars(swing.pendulum), method=method, spacing_s=swing.spacing_s)
+    finest = int(swing.spacing_s * swing.case.frequency / _FINEST[method])
+    low = 1
+    high = min(finest, _SEARCHED // (len(swing.case.rows.times) - 1))
+    candidates = []
+    expected = _steps_per_row(program, method, swing.spacing_s)
+    if 0 < expected <= finest:
+        guess = tuple(swing.theta)
+        expected_steps = replace(steps, steps_per_row=expected, guess=guess)
+        candidates.append(_Candidate(0.0, expected_steps))
+        if expected > high:
+            low = expected - _TRIED // 4
+            high = min(finest, expected + _TRIED // 4)
+    return candidates + _closest(swing, steps, low, high)
 
 
 def _steps_per_row(program: Program | None, method: str, spacing_s: float) -> int:
@@ -358,18 +403,18 @@ def _improved(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tup
     return improved, slopes
 
 
-def _closest(
-    swing: FileCase, steps: Steps, thetas: Array, slopes: Array, low: int, high: int
-) -> list[_Candidate]:
+def _closest(swing: _FirstSwing, steps: Steps, low: int, high: int) -> list[_Candidate]:
     """Return the number of steps from row to row that leaves least, between its neighbours.
 
     The numbers tried lie from `low` to `high`, then ever closer around the best. All are tried
     with every theta; the one that leaves least is improved after each round.
     """
+    thetas = np.column_stack([swing.right, swing.theta])
+    slopes = swing.slopes
     settled = False
     while low <= high:
         steps_per_row = np.unique(np.geomspace(low, high, _TRIED).round().astype(np.int64))
-        norms_m = _residual_norms(swing, steps, thetas, slopes, steps_per_row)
+        norms_m = _residual_norms(swing.case, steps, thetas, slopes, steps_per_row)
         smallest = np.argmin(np.where(np.isfinite(norms_m), norms_m, np.inf))
         which, best = divmod(int(smallest), len(steps_per_row))
         theta = thetas[:, which]
@@ -384,7 +429,7 @@ def _closest(
                 for norm_m, count in zip(norms_m[near].tolist(), counts, strict=True)
             ]
         best_steps = replace(steps, steps_per_row=int(steps_per_row[best]))
-        theta, slopes = _improved(swing, best_steps, theta)
+        theta, slopes = _improved(swing.case, best_steps, theta)
         thetas = theta[:, None]
         settled = high - low < len(steps_per_row)
         if not settled:
