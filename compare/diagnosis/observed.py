@@ -69,50 +69,91 @@ class _FittedNumber:
         return cls(f"{decimal:.{_PRINTED_DIGITS}g}", price)
 
 
-def _maps_of_column(case: FileCase, column: int) -> Iterator[_ColumnMap]:
-    """Yield the maps that may have made a column of the file."""
-    printed = case.rows.positions[:, column]
-    true = case.truth[:, column]
-    names = "xyz"[: case.truth.shape[1]]
-    name = names[column]
+@dataclass(frozen=True)
+class _Column:
+    """A column of a file, and the maps that may have made it.
 
-    def mapped(word: str, text: str, values: Array, price: int = 1) -> _ColumnMap:
-        return _ColumnMap(f"column_{word}", text, (column,), values.reshape(-1, 1), price)
+    Attributes:
+        case: the file.
+        index: of the column.
+    """
 
-    if np.ptp(printed) <= case.resolution:
-        level = float(np.mean(printed))
-        text = f"prints {name} as a constant, {level:.{_PRINTED_DIGITS}g}"
-        yield mapped("constant", text, np.full_like(printed, level))
+    case: FileCase
+    index: int
 
-    for other, other_name in enumerate(names):
-        if other == column:
-            continue
-        for sign, prefix in ((1, ""), (-1, "−")):
-            text = f"prints {prefix}{other_name} in its column of {name}"
-            yield mapped("copied", text, sign * case.truth[:, other])
-    yield mapped("mirrored", f"prints −{name} in its column of {name}", -true)
+    @property
+    def names(self) -> str:
+        """The names of all columns."""
+        return "xyz"[: self.case.truth.shape[1]]
 
-    square = float(true @ true)
-    factor = float(true @ printed) / square if square else 0.0
-    size = rms(true[:, None])
-    # a constant and a mirrored column have words of their own
-    if min(abs(factor), abs(factor + 1)) * size > RIVAL * case.resolution:
-        uncertainty = _uncertainty_m(case, printed - factor * true) / size
-        number = _FittedNumber.of(factor, uncertainty)
-        text = f"prints {name} times {number.text}"
-        yield mapped("scaled", text, factor * true, 1 + number.price)
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self.names[self.index]
 
-    shift = float(np.mean(printed - true))
-    number = _FittedNumber.of(shift, _uncertainty_m(case, printed - true - shift))
-    text = f"prints {name} with {number.text} m added to it"
-    yield mapped("moved", text, true + shift, 1 + number.price)
+    @property
+    def printed(self) -> Array:
+        """Its values in m."""
+        return self.case.rows.positions[:, self.index]
 
-    for count in _LATE_ROWS:
-        if len(printed) <= abs(count) or not _is_even(case):
-            continue
-        late = "one row" if abs(count) == 1 else f"{abs(count)} rows"
-        text = f"prints {name} {late} {'late' if count > 0 else 'early'}"
-        yield mapped("late", text, _late(printed, true, count))
+    @property
+    def true(self) -> Array:
+        """The values in m that a right program prints."""
+        return self.case.truth[:, self.index]
+
+    def maps(self) -> Iterator[_ColumnMap]:
+        """Yield the maps that may have made it."""
+        yield from self._constant()
+        yield from self._copied()
+        text = f"prints −{self.name} in its column of {self.name}"
+        yield self._mapped("mirrored", text, -self.true)
+        yield from self._scaled()
+        yield self._moved()
+        yield from self._late()
+
+    def _mapped(self, word: str, text: str, values: Array, price: int = 1) -> _ColumnMap:
+        return _ColumnMap(f"column_{word}", text, (self.index,), values.reshape(-1, 1), price)
+
+    def _constant(self) -> Iterator[_ColumnMap]:
+        if np.ptp(self.printed) <= self.case.resolution:
+            level = float(np.mean(self.printed))
+            text = f"prints {self.name} as a constant, {level:.{_PRINTED_DIGITS}g}"
+            yield self._mapped("constant", text, np.full_like(self.printed, level))
+
+    def _copied(self) -> Iterator[_ColumnMap]:
+        for other, other_name in enumerate(self.names):
+            if other == self.index:
+                continue
+            for sign, prefix in ((1, ""), (-1, "−")):
+                text = f"prints {prefix}{other_name} in its column of {self.name}"
+                yield self._mapped("copied", text, sign * self.case.truth[:, other])
+
+    def _scaled(self) -> Iterator[_ColumnMap]:
+        true = self.true
+        square = float(true @ true)
+        factor = float(true @ self.printed) / square if square else 0.0
+        size = rms(true[:, None])
+        # a constant and a mirrored column have words of their own
+        if min(abs(factor), abs(factor + 1)) * size > RIVAL * self.case.resolution:
+            uncertainty = _uncertainty_m(self.case, self.printed - factor * true) / size
+            number = _FittedNumber.of(factor, uncertainty)
+            text = f"prints {self.name} times {number.text}"
+            yield self._mapped("scaled", text, factor * true, 1 + number.price)
+
+    def _moved(self) -> _ColumnMap:
+        shift = float(np.mean(self.printed - self.true))
+        residuals = self.printed - self.true - shift
+        number = _FittedNumber.of(shift, _uncertainty_m(self.case, residuals))
+        text = f"prints {self.name} with {number.text} m added to it"
+        return self._mapped("moved", text, self.true + shift, 1 + number.price)
+
+    def _late(self) -> Iterator[_ColumnMap]:
+        for count in _LATE_ROWS:
+            if len(self.printed) <= abs(count) or not _is_even(self.case):
+                continue
+            rows = "one row" if abs(count) == 1 else f"{abs(count)} rows"
+            text = f"prints {self.name} {rows} {'late' if count > 0 else 'early'}"
+            yield self._mapped("late", text, _late(self.printed, self.true, count))
 
 
 def _late(printed: Array, true: Array, count: int) -> Array:
@@ -125,61 +166,97 @@ def _late(printed: Array, true: Array, count: int) -> Array:
     return values
 
 
-def _map_of_plane(word: str, text: str, plane: ComplexArray, price: int) -> _ColumnMap:
-    """Return a map of x and y together, with x + iy that it makes."""
-    positions = np.column_stack([plane.real, plane.imag])
-    return _ColumnMap(f"plane_{word}", text, (0, 1), positions, price)
+@dataclass(frozen=True)
+class _Plane:
+    """x + iy of a file, and the maps that may have made x and y together.
+
+    Attributes:
+        case: the file.
+        printed: its values in m.
+        true: the values in m that a right program prints; not all are 0.
+    """
+
+    case: FileCase
+    printed: ComplexArray
+    true: ComplexArray
+
+    @property
+    def factor(self) -> complex:
+        """The number that fits printed = factor * true best."""
+        return complex(np.vdot(self.true, self.printed) / np.vdot(self.true, self.true))
+
+    def maps(self) -> Iterator[_ColumnMap]:
+        """Yield the maps that may have made them."""
+        yield self._scaled()
+        yield self._turned()
+        yield self._moved()
+        yield self._scaled_and_turned()
+        yield self._similar()
+
+    def _mapped(self, word: str, text: str, plane: ComplexArray, price: int) -> _ColumnMap:
+        positions = np.column_stack([plane.real, plane.imag])
+        return _ColumnMap(f"plane_{word}", text, (0, 1), positions, price)
+
+    def _relative_uncertainty(self, plane: ComplexArray) -> float:
+        """Return an estimate of the error of a factor with which a map makes the plane."""
+        return _uncertainty_m(self.case, self.printed - plane) / rms(self.true[:, None])
+
+    def _scaled(self) -> _ColumnMap:
+        scale = self.factor.real
+        plane = scale * self.true
+        number = _FittedNumber.of(scale, self._relative_uncertainty(plane))
+        return self._mapped(
+            "scaled", f"prints x and y times {number.text}", plane, 1 + number.price
+        )
+
+    def _turned(self) -> _ColumnMap:
+        turn = cmath.phase(self.factor)
+        plane = self.true * cmath.exp(1j * turn)
+        uncertainty = self._relative_uncertainty(plane)
+        radians = _FittedNumber.of(turn, uncertainty)
+        degrees = _FittedNumber.of(math.degrees(turn), math.degrees(uncertainty))
+        angle = f"{degrees.text} degrees" if radians.price else f"{radians.text} rad"
+        text = f"prints x and y turned by {angle}, anticlockwise"
+        # the angle is typed if it has few digits in one of the units
+        return self._mapped("turned", text, plane, 1 + radians.price * degrees.price)
+
+    def _moved(self) -> _ColumnMap:
+        shift = complex(np.mean(self.printed - self.true))
+        uncertainty = _uncertainty_m(self.case, self.printed - self.true - shift)
+        x = _FittedNumber.of(shift.real, uncertainty)
+        y = _FittedNumber.of(shift.imag, uncertainty)
+        text = f"prints x and y with {x.text} m and {y.text} m added to them"
+        return self._mapped("moved", text, self.true + shift, 2 + x.price + y.price)
+
+    def _scaled_and_turned(self) -> _ColumnMap:
+        plane = self.factor * self.true
+        uncertainty = self._relative_uncertainty(plane)
+        scale = _FittedNumber.of(abs(self.factor), uncertainty)
+        turn = math.degrees(cmath.phase(self.factor))
+        degrees = _FittedNumber.of(turn, math.degrees(uncertainty))
+        scaled = f"prints x and y times {scale.text}"
+        text = f"{scaled} and turned by {degrees.text} degrees, anticlockwise"
+        return self._mapped("turned", text, plane, 2 + scale.price + degrees.price)
+
+    def _similar(self) -> _ColumnMap:
+        """Return the map that scales, turns and moves, with four free numbers."""
+        basis = np.column_stack([self.true, np.ones_like(self.true)])
+        factor, shift = solved(basis, self.printed)
+        text = (
+            f"prints x and y times {abs(factor):.6g}, "
+            f"turned by {math.degrees(cmath.phase(factor)):.6g} degrees, "
+            f"with {shift.real:.6g} m and {shift.imag:.6g} m added"
+        )
+        return self._mapped("moved", text, factor * self.true + shift, 8)
 
 
-def _maps_of_plane(case: FileCase) -> Iterator[_ColumnMap]:
-    """Yield the maps that may have made x and y together."""
+def _maps_of_plane(case: FileCase) -> list[_ColumnMap]:
+    """Return the maps that may have made x and y together."""
     printed = case.rows.positions[:, :2] @ np.array([1, 1j])
     true = case.truth[:, :2] @ np.array([1, 1j])
-    size = rms(true[:, None])
-    if not size > 0:
-        return
-    factor = complex(np.vdot(true, printed) / np.vdot(true, true))
-    turn = cmath.phase(factor)
-
-    scaled = factor.real * true
-    number = _FittedNumber.of(factor.real, _uncertainty_m(case, printed - scaled) / size)
-    text = f"prints x and y times {number.text}"
-    yield _map_of_plane("scaled", text, scaled, 1 + number.price)
-
-    turned = true * cmath.exp(1j * turn)
-    uncertainty = _uncertainty_m(case, printed - turned) / size
-    radians = _FittedNumber.of(turn, uncertainty)
-    degrees = _FittedNumber.of(math.degrees(turn), math.degrees(uncertainty))
-    angle = f"{degrees.text} degrees" if radians.price else f"{radians.text} rad"
-    text = f"prints x and y turned by {angle}, anticlockwise"
-    # the angle is typed if it has few digits in one of the units
-    yield _map_of_plane("turned", text, turned, 1 + radians.price * degrees.price)
-
-    shift = complex(np.mean(printed - true))
-    uncertainty = _uncertainty_m(case, printed - true - shift)
-    x = _FittedNumber.of(shift.real, uncertainty)
-    y = _FittedNumber.of(shift.imag, uncertainty)
-    text = f"prints x and y with {x.text} m and {y.text} m added to them"
-    yield _map_of_plane("moved", text, true + shift, 2 + x.price + y.price)
-
-    scaled_and_turned = factor * true
-    uncertainty = _uncertainty_m(case, printed - scaled_and_turned) / size
-    scale = _FittedNumber.of(abs(factor), uncertainty)
-    degrees = _FittedNumber.of(math.degrees(turn), math.degrees(uncertainty))
-    text = f"prints x and y times {scale.text} and turned by {degrees.text} degrees, anticlockwise"
-    yield _map_of_plane("turned", text, scaled_and_turned, 2 + scale.price + degrees.price)
-    yield _similarity(printed, true)
-
-
-def _similarity(printed: ComplexArray, true: ComplexArray) -> _ColumnMap:
-    """Return the map that scales, turns and moves x and y, with four free numbers."""
-    factor, shift = solved(np.column_stack([true, np.ones_like(true)]), printed)
-    text = (
-        f"prints x and y times {abs(factor):.6g}, "
-        f"turned by {math.degrees(cmath.phase(factor)):.6g} degrees, "
-        f"with {shift.real:.6g} m and {shift.imag:.6g} m added"
-    )
-    return _map_of_plane("moved", text, factor * true + shift, 8)
+    if not rms(true[:, None]) > 0:
+        return []
+    return list(_Plane(case, printed, true).maps())
 
 
 def _general_map(case: FileCase) -> _ColumnMap:
@@ -245,10 +322,10 @@ def of_observation(case: FileCase) -> Explanation | None:
 
 def _cheapest_choice(case: FileCase, wrong: Sequence[int]) -> _Choice:
     """Return the maps of each wrong column, or those of x and y together if that is cheaper."""
-    separate = {column: _best(case, [*_maps_of_column(case, column)]) for column in wrong}
+    separate = {column: _best(case, [*_Column(case, column).maps()]) for column in wrong}
     choice = _Choice(tuple(separate.values()))
     if 0 in wrong and 1 in wrong:
-        plane = _best(case, [*_maps_of_plane(case)]) or _best(case, [_general_map(case)])
+        plane = _best(case, _maps_of_plane(case)) or _best(case, [_general_map(case)])
         vertical = [maps for column, maps in separate.items() if column > 1]
         together = _Choice((plane, *vertical))
         if together.price < choice.price:
@@ -282,7 +359,7 @@ def _best(case: FileCase, maps: Sequence[_ColumnMap]) -> tuple[_ColumnMap, ...]:
     return tuple(column_map for column_map in near if column_map.price == price)
 
 
-def _uncertainty_m(case: FileCase, residuals: Array) -> float:
+def _uncertainty_m(case: FileCase, residuals: Array | ComplexArray) -> float:
     """Return an estimate of the error of a mean in m: the rms residual, or the rounding."""
     return max(rms(residuals[:, None]), case.resolution)
 
