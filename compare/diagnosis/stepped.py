@@ -348,7 +348,7 @@ class _FirstSwing:
 
 
 def _first_rows(case: FileCase) -> FileCase | None:
-    """Return the rows of the first swing; None if rows are not evenly spaced from the release on."""
+    """Return the rows of the first swing; None if they are not even from the release on."""
     times = case.rows.times
     if len(times) < 8 or times[0] != 0 or not case.frequency:
         return None

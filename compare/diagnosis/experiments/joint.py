@@ -209,8 +209,7 @@ class JointCase(FileCase):
 
         Their residuals are at most `most` times what is permitted in each run.
         """
-        kinds = [kind for kind in self.runs[0].fits if all(kind in run.fits for run in self.runs)]
-        fits = [self._fit(kind) for kind in kinds]
+        fits = [self._fit(kind) for kind in self._common_kinds()]
         finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
         readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
         readings = [
@@ -218,6 +217,13 @@ class JointCase(FileCase):
         ]
         explaining = [reading for reading in readings if self.off(reading) <= most]
         return sorted(explaining, key=lambda reading: reading.score)
+
+    def _common_kinds(self) -> list[str]:
+        """Return the families that fit all runs."""
+        kinds = list(self.runs[0].fits)
+        for run in self.runs:
+            kinds = [kind for kind in kinds if kind in run.fits]
+        return kinds
 
     def off(self, reading: CauseReading) -> float:
         """Return the largest residual of a reading in any run, over what is permitted there."""
