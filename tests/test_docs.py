@@ -205,7 +205,7 @@ def test_the_table_of_causes_is_that_of_the_code():
     }
     source = (ROOT / "compare/diagnosis/observed.py").read_text(encoding="utf-8")
     words |= {
-        f"column_{word}" for word in re.findall(r' mapped\(\s*"(\w+)"', source)
+        f"column_{word}" for word in re.findall(r'_mapped\(\s*"(\w+)"', source)
     } & COLUMN_WORDS
     words |= {f"plane_{word}" for word in ("scaled", "turned", "moved")}
     told = {word for words in causes_page.HABITS for word in words.split(", ")}

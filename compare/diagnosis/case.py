@@ -12,7 +12,7 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from .advice import advice
-from .phasors import sinc
+from .phasors import ComplexArray, sinc
 from .programs import NAMES, Program, SphericalPendulum
 from .thresholds import FINEST, RIVAL, ROUNDED
 
@@ -70,7 +70,7 @@ def largest(difference: Array) -> float:
     return float(np.linalg.norm(difference, axis=1).max())
 
 
-def rms(difference: Array) -> float:
+def rms(difference: Array | ComplexArray) -> float:
     """Return the root mean square distance in m that they make."""
     return float(np.linalg.norm(difference)) / math.sqrt(len(difference))
 

@@ -1,7 +1,7 @@
-"""Conventions of a file, put right one after the other: digits, heights, the unit of length and the axes, the clock.
+"""Conventions of a file, corrected in turn: digits, heights, unit of length and axes, clock.
 
-Each stage changes the rows alone, and gives them back as a right program would write them. Axes that a program uses
-from its release on are no matter of the rows: they stand among the `causes`.
+Each function returns the rows as a right program would write them, with what was corrected.
+Axes that a program itself computes with, from its release on, belong to the `causes`.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -22,16 +22,16 @@ from .case import FileRows, largest
 from .phasors import as_angles, fit_phasors, sinc
 
 # of the distance from the vertical: a row 0 nearer than this to the release is the release
-NEAR = 2e-5
-FLAT = "gives z a constant: its bob does not rise as it swings"
-SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
-OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is reported
-SLIGHT = 1e-9  # and by more than this, heights are left out
-ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
-ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
-SINGLE = 1e-6  # of the span: rounding of times in single precision
-SHIFTS = 3  # rows by which a clock may be off
-DECAYS = 0.1  # of its frequency: a swing that decays, or grows, faster tells no unit of time
+_NEAR = 2e-5
+_FLAT = "gives z a constant: its bob does not rise as it swings"
+_SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
+_OFF = 1e-7  # of the cord: a larger change of the distance from the suspension is reported
+_SLIGHT = 1e-9  # of the cord: with a larger change than this, heights are ignored
+_ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
+ROUGHLY = 0.03  # of the distance from the vertical: how far a release in another unit may be off
+_SINGLE = 1e-6  # of the span: rounding of times in single precision
+_SHIFTS = 3  # rows by which a clock may be off
+_DECAYS = 0.1  # of its frequency: a swing that decays or grows faster shows no unit of time
 LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in ("cm", "mm", "km", "ft", "in")}
 TIMES_SAID = {unit: f"counts time in {LONG_NAMES[unit]}" for unit in ("min", "h", "ms", "d")}
 # order and signs by which a file's horizontal columns become the scene's: x of the scene first
@@ -45,13 +45,17 @@ AXES_SAID = {
     ((1, 0), (1, -1)): ("axes_turned", "writes south as x and east as y"),
     ((1, 0), (-1, -1)): ("axes_turned", "writes south as x and west as y"),
 }
-PARTS = 4  # of a row: programs that write every second or fourth step are off by that
+_PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
+# order of a file's columns by which its third becomes the vertical
+_VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
+_Axes = tuple[tuple[int, int], tuple[int, int]]
+_AS_IN_SCENE: _Axes = ((0, 1), (1, 1))
 
 
-def is_release(row: Array, release: Array, noise: float) -> bool:
+def _is_release(row: Array, release: Array, noise: float) -> bool:
     """Return whether a row is the release but for its rounding."""
     size = max(float(np.hypot(release[0], release[1])), 1e-6 * float(np.abs(release).max()))
-    return bool(np.abs(row[:2] - release[:2]).max() <= NEAR * size + 2 * noise)
+    return bool(np.abs(row[:2] - release[:2]).max() <= _NEAR * size + 2 * noise)
 
 
 def digits(rows: FileRows) -> FileRows:
@@ -64,33 +68,65 @@ def digits(rows: FileRows) -> FileRows:
     if len(values) < 20:
         return exact
 
-    def same(rounded: Array) -> bool:
-        return bool((np.abs(rounded - values) <= 1e-15 * np.abs(values)).all())
-
-    single = values.astype(np.float32).astype(float)
-    in_single, single_noise = same(single), size * float(np.finfo(np.float32).eps)
-    # printed with nine digits, as C does; those of a large swing have as few decimals as a file in double
-    in_single = in_single or same(np.array([float(f"{value:.8e}") for value in single]))
-    for decimals in range(13):
-        if same(np.round(values, decimals)):
-            noise = 0.5 * 10.0**-decimals
-            if noise < (single_noise if in_single else 1e-12 * size):
-                break
+    single_noise = size * float(np.finfo(np.float32).eps)
+    in_single = _in_single_precision(values)
+    decimals = next((n for n in range(13) if _same(np.round(values, n), values)), None)
+    if decimals is not None:
+        noise = 0.5 * 10.0**-decimals
+        least_noise = single_noise if in_single else 1e-12 * size
+        if not noise < least_noise:
             text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
             return rows.changed(Deviation("decimals", text, noise), noise=noise)
     if in_single:
         text = f"holds numbers in single precision, good to {single_noise:.1g} of its unit"
         return rows.changed(Deviation("single_precision", text, single_noise), noise=single_noise)
-    for count in range(3, 13):
-        if same(np.array([float(f"{value:.{count - 1}e}") for value in values])):
-            noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - count)
-            text = f"prints {count} digits: no more than {noise:.1g} of its unit can be judged"
-            return rows.changed(Deviation("digits", text, noise), noise=noise)
-    return exact
+    count = next((n for n in range(3, 13) if _same(_with_digits(values, n), values)), None)
+    if count is None:
+        return exact
+    noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - count)
+    text = f"prints {count} digits: no more than {noise:.1g} of its unit can be judged"
+    return rows.changed(Deviation("digits", text, noise), noise=noise)
+
+
+def _same(rounded: Array, values: Array) -> bool:
+    """Return whether rounding leaves values as they are."""
+    return bool((np.abs(rounded - values) <= 1e-15 * np.abs(values)).all())
+
+
+def _with_digits(values: Array, count: int) -> Array:
+    """Return values rounded to a number of significant digits."""
+    return np.array([float(f"{value:.{count - 1}e}") for value in values])
+
+
+def _in_single_precision(values: Array) -> bool:
+    """Return whether values are numbers of single precision, in full or printed with nine digits.
+
+    C prints nine digits. In a large swing these are as few decimals as in double precision.
+    """
+    single = values.astype(np.float32).astype(float)
+    return _same(single, values) or _same(_with_digits(single, 9), values)
+
+
+@dataclass(frozen=True)
+class _Heights:
+    """How a file may count heights.
+
+    Attributes:
+        sign: of its vertical, -1 where it points down.
+        shift: height in m of its lowest point.
+        text: what is reported; empty for heights as in the scene.
+    """
+
+    sign: int
+    shift: float
+    text: str
 
 
 def heights(rows: FileRows, length: float) -> FileRows:
-    """Find the vertical: another column, upside down, from the lowest point; or no height of a sphere at all."""
+    """Find the vertical: another column, upside down, or from the lowest point.
+
+    If no column has the heights of a bob on the sphere, heights are ignored.
+    """
     if rows.positions.shape[1] < 3:
         return rows
     offset = _offset_of_heights(rows, length)
@@ -98,52 +134,65 @@ def heights(rows: FileRows, length: float) -> FileRows:
         text = f"has z {abs(offset):.6g} m too {'high' if offset > 0 else 'low'} in every row"
         moved = rows.positions - [0.0, 0.0, offset]
         rows = rows.changed(Deviation("z_offset", text, abs(offset)), positions=moved)
-    orders = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
+
     down = "counts z downwards"
-    ways = (
-        (1, 0.0, ""),
-        (-1, 0.0, down),
-        (1, length, "counts z from the lowest point"),
-        (-1, length, down),
+    counts = (
+        _Heights(1, 0.0, ""),
+        _Heights(-1, 0.0, down),
+        _Heights(1, length, "counts z from the lowest point"),
+        _Heights(-1, length, down),
     )
-    for order, (sign, shift, text) in itertools.product(orders, ways):
-        plane, printed = rows.positions[:, order[:2]], rows.positions[:, order[2]]
-        column = printed * sign - shift
+    for order, counted in itertools.product(_VERTICALS, counts):
+        plane = rows.positions[:, order[:2]]
+        column = rows.positions[:, order[2]] * counted.sign - counted.shift
         square = plane[:, 0] ** 2 + plane[:, 1] ** 2
         if (square >= length * length).any():
             continue
         on_sphere = -np.sqrt(length * length - square)
-        if np.abs(column - on_sphere).max() > ALIKE * length:
+        if np.abs(column - on_sphere).max() > _ALIKE * length:
             continue
-        right = rows
-        if text:
-            word = "z_down" if sign < 0 else "z_from_lowest"
-            right = right.changed(Deviation(word, text, float(np.abs(column - printed).max())))
-        if order != (0, 1, 2):
-            right = right.changed(
-                Deviation("vertical_is_not_z", f"calls the vertical {'xyz'[order[2]]}", length)
-            )
-        reach = np.sqrt(square + column * column)
-        drift = float(np.ptp(reach))
+
         if float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere)):
-            return _flat(rows.changed(Deviation("z_constant", FLAT)))
-        if drift > max(20 * rows.noise, OFF * length):
-            return _flat(
-                right.changed(Deviation("off_the_sphere", SPRING, drift), cord=float(reach.mean()))
-            )
-        if right is not rows:
-            return replace(right, positions=np.column_stack([plane, column]))
-        # a slight drift is no matter of its own, but no height to fit either
-        return (
-            _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) or rows.relative else rows
-        )
+            return _flat(rows.changed(Deviation("z_constant", _FLAT)))
+        return _with_heights(rows, order, counted, length)
     return _flat(rows)
 
 
-def _offset_of_heights(rows: FileRows, length: float) -> float:
-    """Return by how much z is too high in every row, in m; 0 if it is not, or counted from the lowest point.
+def _with_heights(
+    rows: FileRows, order: tuple[int, int, int], counted: _Heights, length: float
+) -> FileRows:
+    """Return rows with heights as in the scene; without heights if the bob leaves the sphere."""
+    plane = rows.positions[:, order[:2]]
+    printed = rows.positions[:, order[2]]
+    column = printed * counted.sign - counted.shift
+    corrected = rows
+    if counted.text:
+        word = "z_down" if counted.sign < 0 else "z_from_lowest"
+        size = float(np.abs(column - printed).max())
+        corrected = corrected.changed(Deviation(word, counted.text, size))
+    if order != _VERTICALS[0]:
+        text = f"calls the vertical {'xyz'[order[2]]}"
+        corrected = corrected.changed(Deviation("vertical_is_not_z", text, length))
 
-    It is 0 as well where the rows keep a distance from the suspension: then their cord may have another length.
+    square = plane[:, 0] ** 2 + plane[:, 1] ** 2
+    cord = np.sqrt(square + column * column)
+    drift = float(np.ptp(cord))
+    if drift > max(20 * rows.noise, _OFF * length):
+        spring = Deviation("off_the_sphere", _SPRING, drift)
+        return _flat(corrected.changed(spring, cord=float(cord.mean())))
+    if corrected is not rows:
+        return replace(corrected, positions=np.column_stack([plane, column]))
+    # a slight drift is not reported, but such heights cannot be fitted either
+    if drift > max(20 * rows.noise, _SLIGHT * length) or rows.relative:
+        return _flat(rows)
+    return rows
+
+
+def _offset_of_heights(rows: FileRows, length: float) -> float:
+    """Return by how much z is too high in every row, in m.
+
+    It is 0 if heights are right or counted from the lowest point. It is 0 as well if the rows keep
+    a distance from the suspension: then their cord may have another length.
     """
     x, y, z = rows.positions.T
     square = x * x + y * y
@@ -151,57 +200,93 @@ def _offset_of_heights(rows: FileRows, length: float) -> float:
         return 0.0
     above = z + np.sqrt(length * length - square)
     offset = float(np.median(above))
-    same = max(20 * rows.noise, OFF * length)
-    reach = np.sqrt(square + z * z)
-    if np.ptp(above) > same or np.ptp(reach) <= same or abs(offset - length) <= same:
+    same = max(20 * rows.noise, _OFF * length)
+    cord = np.sqrt(square + z * z)
+    if np.ptp(above) > same or np.ptp(cord) <= same or abs(offset - length) <= same:
         return 0.0
     return offset
 
 
 def _flat(rows: FileRows) -> FileRows:
-    """Leave the heights out of the explanation."""
+    """Return the rows without heights."""
     plane = np.ascontiguousarray(rows.plane)
-    finer = float(np.abs(plane).max() / np.abs(rows.positions).max()) if rows.relative else 1.0
-    return replace(rows, positions=plane, noise=rows.noise * finer)
+    noise = rows.noise
+    if rows.relative:  # the smaller numbers of the plane are rounded by less
+        noise *= float(np.abs(plane).max() / np.abs(rows.positions).max())
+    return replace(rows, positions=plane, noise=noise)
+
+
+@dataclass(frozen=True)
+class _UnitOfLength:
+    """A unit that a file may use: its number in a metre, and what is reported."""
+
+    per_metre: float
+    text: str
+
+
+_METRES = _UnitOfLength(1.0, "")
+
+
+def _units_of_length(length: float) -> list[_UnitOfLength]:
+    """Return the units in which a file may write lengths, metres first."""
+    return [
+        _METRES,
+        *(_UnitOfLength(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()),
+        *(
+            _UnitOfLength(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}")
+            for unit in ("cm", "mm")
+        ),
+        _UnitOfLength(1 / length, "is in cord lengths (x/l)"),
+    ]
 
 
 def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRows:
-    """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
+    """Find the unit of length and the names of the horizontal axes that make row 0 the release.
+
+    Args:
+        rows: of the file.
+        release: position and velocity of the scene.
+        length: of the cord in m.
+        rename: whether the horizontal axes may have other names.
+    """
     first, last = rows.positions[[0, -1]]
-    released = any(is_release(row, release, rows.noise) for row in (first, last))
+    released = any(_is_release(row, release, rows.noise) for row in (first, last))
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
-    units = [(1.0, ""), *((1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items())]
-    units += [
-        (float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}") for unit in ("cm", "mm")
-    ]
-    units += [(1 / length, "is in cord lengths (x/l)")]
-    ways = [*AXES_SAID]
-    for row, (scale, text), (order, signs) in itertools.product(
-        (first, last), units, ways if rename else ways[:1]
-    ):
-        if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
-            return _renamed(_in_metres(rows, scale, text, length), order, signs)
-    # another unit or other axes, and a release that is a little off; of a cord of a metre the release alone may be
-    near = [(unit, ways[0]) for unit in units if abs(unit[0] - 1) >= 3 * ROUGHLY]
-    # else its axes may be right
-    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * np.hypot(*release[:2]):
-        near += [(units[0], way) for way in ways[1:] if rename]
-    for (scale, text), (order, signs) in near:
-        if np.abs(
-            first[[*order]] / scale * np.array(signs) - release[:2]
-        ).max() < ROUGHLY * np.hypot(*release[:2]):
-            return _renamed(_in_metres(rows, scale, text, length), order, signs)
-    angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
-    tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
-    polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
-    for (unit, size), expected in itertools.product(
-        (("degrees", 180 / math.pi), ("radians", 1.0)), (angles, polar)
-    ):
-        if (
-            np.abs(first[:2] / size - expected).max()
-            <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
-        ):
+
+    units = _units_of_length(length)
+    named = [*AXES_SAID] if rename else [_AS_IN_SCENE]
+    for row, unit, (order, signs) in itertools.product((first, last), units, named):
+        placed = row[[*order]] / unit.per_metre * np.array(signs)
+        if _is_release(placed, release, rows.noise / unit.per_metre):
+            return _renamed(_in_metres(rows, unit, length), order, signs)
+
+    # another unit or other axes, and a release that is a little off
+    distance = np.hypot(*release[:2])
+    # a unit of about a metre, such as a cord of a metre: the release alone may be off
+    near = [(unit, _AS_IN_SCENE) for unit in units if abs(unit.per_metre - 1) >= 3 * ROUGHLY]
+    # a release that is nearly right may have the right axes
+    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * distance:
+        near += [(_METRES, way) for way in named if way != _AS_IN_SCENE]
+    for unit, (order, signs) in near:
+        placed = first[[*order]] / unit.per_metre * np.array(signs)
+        if np.abs(placed - release[:2]).max() < ROUGHLY * distance:
+            return _renamed(_in_metres(rows, unit, length), order, signs)
+    return _from_angles(rows, release, length) or replace(rows, starts=False)
+
+
+def _from_angles(rows: FileRows, release: Array, length: float) -> FileRows | None:
+    """Return rows that give angles of the cord as positions in m; None if they do not."""
+    first = rows.positions[0]
+    distance = float(np.hypot(*release[:2]))
+    # the angle of each coordinate by itself, or that of the cord along the direction of the bob
+    separate = np.arcsin(np.clip(release[:2] / length, -1, 1))
+    polar = release[:2] / max(distance, 1e-300) * math.asin(min(1.0, distance / length))
+    for unit, size in (("degrees", 180 / math.pi), ("radians", 1.0)):
+        for expected in (separate, polar):
+            near = _NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
+            if not np.abs(first[:2] / size - expected).max() <= near:
+                continue
             theta = rows.plane / size
             plane = length * np.sin(theta)
             if expected is polar:
@@ -209,30 +294,32 @@ def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRow
             text = f"gives x and y as angles of the cord in {unit}"
             convention = Deviation("angles", text, float(np.abs(first).max()))
             return rows.changed(convention, positions=plane, noise=rows.noise / size * length)
-    return replace(rows, starts=False)
+    return None
 
 
-def _in_metres(rows: FileRows, scale: float, text: str, length: float) -> FileRows:
-    """Return the rows over a scale, with what is said of it; as they are where nothing is.
+def _in_metres(rows: FileRows, unit: _UnitOfLength, length: float) -> FileRows:
+    """Return the rows in metres, with what is reported of their unit.
 
-    Heights are left out where they are not those of the cord then.
+    Heights are ignored if they are not those of the cord then.
     """
-    if not text:
+    if not unit.text:
         return rows
-    p = rows.positions / scale
+    positions = rows.positions / unit.per_metre
     # whether it keeps the cord was judged in the wrong unit
     kept = tuple(convention for convention in rows.conventions if convention.id != "off_the_sphere")
     rows = replace(rows, conventions=kept)
-    convention = Deviation("unit_of_length", text, largest(p - rows.positions))
-    made = rows.changed(convention, positions=p, noise=rows.noise / scale)
-    if p.shape[1] < 3:
-        return made
-    below = -np.sqrt(np.maximum(length**2 - p[:, 0] ** 2 - p[:, 1] ** 2, 0))
-    return made if np.abs(p[:, 2] - below).max() < 1e-3 * length else _flat(made)
+    convention = Deviation("unit_of_length", unit.text, largest(positions - rows.positions))
+    noise = rows.noise / unit.per_metre
+    in_metres = rows.changed(convention, positions=positions, noise=noise)
+    if positions.shape[1] < 3:
+        return in_metres
+    x, y, z = positions.T
+    on_sphere = -np.sqrt(np.maximum(length**2 - x**2 - y**2, 0))
+    return in_metres if np.abs(z - on_sphere).max() < 1e-3 * length else _flat(in_metres)
 
 
 def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> FileRows:
-    """Return the rows with the horizontal axes in another order and with other signs, and what is said of that."""
+    """Return the rows with the horizontal axes in another order and with other signs."""
     word, text = AXES_SAID[order, signs]
     if not text:
         return rows
@@ -243,29 +330,34 @@ def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> 
 
 def clock(rows: FileRows, release: Array) -> FileRows:
     """Find rows in reverse order, and a clock that does not start at 0."""
-    first, last = (is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
-    if last and not first and len(rows.times) > 2:
+    begins = _is_release(rows.positions[0], release, rows.noise)
+    ends = _is_release(rows.positions[-1], release, rows.noise)
+    if ends and not begins and len(rows.times) > 2:
         return replace(_reversed(rows), starts=True)
-    return _from_zero(rows, release) if first and 0 < rows.times[0] < rows.times[-1] else rows
+    if begins and 0 < rows.times[0] < rows.times[-1]:
+        return _from_zero(rows, release)
+    return rows
 
 
 def _from_zero(rows: FileRows, release: Array) -> FileRows:
-    """Return the rows with a clock that starts at 0, and what is said of that."""
+    """Return the rows with a clock that starts at 0."""
     text = f"starts its clock at {rows.times[0]:.10g} s and not at 0"
     convention = Deviation("clock_offset", text, float(np.hypot(*release[:2])))
     return rows.changed(convention, times=rows.times - rows.times[0], starts=True)
 
 
 def other_conventions(rows: FileRows, release: Array) -> Iterator[FileRows]:
-    """Yield rows that were made right as those of other conventions between which row 0 does not decide."""
+    """Yield the rows as those of other conventions, between which row 0 does not decide."""
     if 0 < rows.times[0] < rows.times[-1]:  # a clock that starts late, and a release that is off
         yield _from_zero(rows, release)
-    if abs(abs(release[0]) - abs(release[1])) <= NEAR * abs(release[0]):
-        yield _renamed(rows, (1, 0), (1, 1) if release[0] * release[1] > 0 else (-1, -1))
+    x, y = release[:2]
+    if abs(abs(x) - abs(y)) <= _NEAR * abs(x):
+        signs = (1, 1) if x * y > 0 else (-1, -1)
+        yield _renamed(rows, (1, 0), signs)
 
 
 def _reversed(rows: FileRows) -> FileRows:
-    """Return the rows in reverse order, their clock turned round as well, and what is said of that."""
+    """Return the rows in reverse order, with a clock that runs backwards."""
     positions = rows.positions[::-1].copy()
     text = "has its rows in reverse order: the release stands last"
     convention = Deviation("rows_reversed", text, largest(positions - rows.positions))
@@ -277,27 +369,30 @@ def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
     if not frequency or len(rows.times) < 12:
         return rows
     plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
-    plane = as_angles(plane, length) if np.abs(plane).max() < length else plane
-    some = slice(0, min(len(plane), 400))
+    if np.abs(plane).max() < length:
+        plane = as_angles(plane, length)
     size = float(np.abs(plane).max())
+    first_times = rows.times[:400]
+    first_plane = plane[:400]
 
     def ratio(scale: float) -> float | None:
         """Return the frequency of the rows over the scene's, their times multiplied by a scale."""
-        fitted = fit_phasors(rows.times[some] * scale, plane[some], frequency)
-        rate = 0.0 if fitted is None or fitted[1] > 0.05 * size else abs(fitted[0].square) ** 0.5
-        # a part of a wide swing in another unit looks like one that dies away, or grows, within it
-        return (
-            rate / frequency if fitted is not None and abs(fitted[0].drag) < DECAYS * rate else None
-        )
+        fit = fit_phasors(first_times * scale, first_plane, frequency)
+        if fit is None or fit.residual > 0.05 * size:
+            return None
+        rate = abs(fit.phasors.square) ** 0.5
+        # a part of a wide swing in another unit looks like one that decays, or grows, within it
+        return rate / frequency if abs(fit.phasors.drag) < _DECAYS * rate else None
 
     as_printed = ratio(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:
         return rows
-    spacing, span = float(np.median(np.diff(rows.times))), float(rows.times[-1] - rows.times[0])
+    spacing = float(np.median(np.diff(rows.times)))
+    span = float(rows.times[-1] - rows.times[0])
     for unit, text in TIMES_SAID.items():
         scale = float(TIMES[unit])
         if not spacing * scale * frequency < math.pi < span * scale * frequency:
-            # farther apart, rows of any frequency look like those of another; closer, they show none
+            # rows farther apart fit several frequencies; over a shorter span they show none
             continue
         scaled = ratio(scale)
         if scaled is not None and abs(scaled - 1) < 0.1:
@@ -306,47 +401,81 @@ def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
 
 
 def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
-    """Undo the rounding of times to single precision, or add to the noise how far the bob moves meanwhile."""
+    """Undo the rounding of times to single precision.
+
+    If it cannot be undone, the distance that the bob moves meanwhile is added to the noise.
+    """
     even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
-    late = float(np.abs(rows.times - even).max())
+    error_s = float(np.abs(rows.times - even).max())
     single = any(convention.id == "single_precision" for convention in rows.conventions)
-    if not single or late > SINGLE * rows.times[-1]:  # else they are not evenly spaced
+    if not single or error_s > _SINGLE * rows.times[-1]:  # or they are not evenly spaced
         return rows
     exact = float(f"{even[1] - even[0]:.6g}") * np.arange(len(even)) + even[0]
     if (exact.astype(np.float32) == rows.times.astype(np.float32)).all():
         return replace(rows, times=exact)
-    return replace(rows, noise=rows.noise + late * frequency * float(np.abs(rows.plane).max()))
+    return replace(rows, noise=rows.noise + error_s * frequency * float(np.abs(rows.plane).max()))
+
+
+@dataclass(frozen=True)
+class _ReleasePassage:
+    """A time at which the fitted motion passes near the release.
+
+    Attributes:
+        distance_m: from the release, that of the velocity included.
+        parts: the time, in parts of a row.
+        rows: in the order that was fitted.
+    """
+
+    distance_m: float
+    parts: int
+    rows: FileRows
 
 
 def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> FileRows:
-    """Find a clock that is off, the rows in order or reversed: the fitted motion passes the release some rows away."""
+    """Find a clock that is off by a few rows: the fitted motion passes the release then.
+
+    The rows may be in order or reversed.
+    """
     if not frequency or len(rows.times) < 12:
         return rows
-    goal = as_angles(np.array([complex(release[0], release[1])]), length)[0]
-    moving = complex(release[3], release[4])
-    spacing = float(np.median(np.diff(rows.times)))
-    passed: list[tuple[float, int, FileRows]] = []
+    start = as_angles(np.array([complex(release[0], release[1])]), length)[0]
+    speed = complex(release[3], release[4])
+    spacing_s = float(np.median(np.diff(rows.times)))
+    passages: list[_ReleasePassage] = []
     for ordered in (rows, _reversed(rows)):
         plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
-        fitted = fit_phasors(ordered.times, plane, frequency)
-        if fitted is None or fitted[1] > 1e-2 * abs(goal):
+        fit = fit_phasors(ordered.times, plane, frequency)
+        if fit is None or fit.residual > 1e-2 * abs(start):
             continue
-        for parts in range(-SHIFTS * PARTS, SHIFTS * PARTS + 1):
-            at = fitted[0].later(parts * spacing / PARTS)
-            off = abs(at.start - goal) + abs(at.speed - moving) / frequency
-            passed.append((float(off), parts, ordered))
-    passed.sort(key=lambda passage: passage[0] + 1e-9 * abs(goal) * abs(passage[1]))
-    if not passed or passed[0][0] > 2e-2 * abs(goal):
+        for parts in range(-_SHIFTS * _PARTS, _SHIFTS * _PARTS + 1):
+            motion = fit.phasors.later(parts * spacing_s / _PARTS)
+            distance = abs(motion.start - start) + abs(motion.speed - speed) / frequency
+            passages.append(_ReleasePassage(float(distance), parts, ordered))
+    if not passages:
         return rows
-    _, parts, right = passed[0]
-    shift = parts * spacing / PARTS
-    if parts:
-        count = "one row" if abs(parts) == PARTS else f"{Fraction(abs(parts), PARTS)} rows"
-        text = f"has its clock {'ahead of' if parts > 0 else 'behind'} its rows by {count} ({abs(shift):.6g} s)"
-        size = abs(goal) * min(2.0, frequency * abs(shift))
-        right = right.changed(
-            Deviation(f"rows_{'late' if parts < 0 else 'early'}", text, float(size))
-        )
-    times = right.times - shift
+    # of equal ones, the smallest shift
+    best = min(passages, key=lambda p: p.distance_m + 1e-9 * abs(start) * abs(p.parts))
+    if best.distance_m > 2e-2 * abs(start):
+        return rows
+
+    shift_s = best.parts * spacing_s / _PARTS
+    size_m = abs(start) * min(2.0, frequency * abs(shift_s))
+    return _from_release(best, shift_s, float(size_m))
+
+
+def _from_release(passage: _ReleasePassage, shift_s: float, size_m: float) -> FileRows:
+    """Return the rows from a passage of the release on, their clock shifted to 0 there.
+
+    `size_m` is the effect of the shift.
+    """
+    rows = passage.rows
+    if passage.parts:
+        count = abs(passage.parts)
+        distance = "one row" if count == _PARTS else f"{Fraction(count, _PARTS)} rows"
+        side = "ahead of" if passage.parts > 0 else "behind"
+        text = f"has its clock {side} its rows by {distance} ({abs(shift_s):.6g} s)"
+        word = "rows_late" if passage.parts < 0 else "rows_early"
+        rows = rows.changed(Deviation(word, text, size_m))
+    times = rows.times - shift_s
     kept = times >= 0
-    return replace(right, times=times[kept], positions=right.positions[kept], starts=True)
+    return replace(rows, times=times[kept], positions=rows.positions[kept], starts=True)

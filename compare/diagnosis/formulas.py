@@ -1,11 +1,13 @@
-"""A slip in a closed formula: the two rates of a linear model, but products of cosines and sines that are not its own.
+"""A slip in a closed formula: the two rates of a linear model, with other coefficients.
 
-A program that solves no equation but prints a formula keeps its rates whatever it does to its coefficients:
+A program that prints a formula instead of solving an equation keeps its rates, whatever its
+coefficients are:
 
     x, y = c1 cos ωt cos βt + c2 cos ωt sin βt + c3 sin ωt cos βt + c4 sin ωt sin βt + c5.
 
-ω and β are fitted to x and y together, the coefficients are linear. A few of them that are far from the model's are
-slips. They are put right in the rows, and what the rows then show of the program passes the tests of a claim.
+ω and β are fitted to x and y together, the coefficients are linear. A few coefficients that are far
+from the model's are slips. They are corrected in the rows, and whatever else the rows show of the
+program has to pass the tests of a claim.
 """
 
 from __future__ import annotations
@@ -27,27 +29,34 @@ from .fitted import readings_of
 from .programs import Program
 from .thresholds import NEEDED
 
-PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
-LEAST = 24  # rows, twice the numbers that are fitted
-STEPS = 12  # Gauss-Newton steps in one window at most
-GAIN = 0.9  # of what was left: a step that leaves more is not taken
-WINDOW = 4.0  # ratio of the lengths of one window and the one before
-HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
-SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
-FLAT = 1e-12  # of the largest: products whose share in the rows is less are not distinguished
-MOST = 3  # coefficients that are off
-# of the amplitude: a coefficient that is off by less may be so by an integrator's step
-SLIGHT = 0.05
-RELEASES = (0.0, 1.0, -1.0, 2.0)  # velocities of the release over that of rest against the stars
+_PRODUCTS = (
+    "cos ωt cos βt",
+    "cos ωt sin βt",
+    "sin ωt cos βt",
+    "sin ωt sin βt",
+    "the constant term",
+)
+_LEAST = 24  # rows, twice the numbers that are fitted
+_STEPS = 12  # Gauss-Newton steps in one window at most
+_GAIN = 0.9  # of the residual: a step that leaves more is not taken
+_WINDOW = 4.0  # ratio of the length of a window to that of the one before
+_HELD = 1e-9  # of the amplitude: holds a rate that a window does not determine
+_SAME = 1e-6  # of the amplitude: coefficients that differ by less are equal
+# of the largest singular value: combinations of products below it are not distinguished
+_FLAT = 1e-12
+_MOST = 3  # coefficients that are wrong
+# of the amplitude: an integrator's step may change a coefficient by less
+_SLIGHT = 0.05
+_RELEASES = (0.0, 1.0, -1.0, 2.0)  # velocities of the release over that of rest against the stars
 
 
 @dataclass(frozen=True)
-class Slip:
-    """A coefficient that is not the model's.
+class _Slip:
+    """A coefficient that differs from the model's.
 
     Attributes:
         column: 0 of x, 1 of y.
-        product: its number in `PRODUCTS`.
+        product: its index in `_PRODUCTS`.
         value: in m.
         right: the model's, in m.
     """
@@ -58,23 +67,22 @@ class Slip:
     right: float
 
     def sentence(self, size: float) -> str:
-        """Return what is said of it; numbers that are small beside a size are 0."""
-        value, right = (
-            number if abs(number) > SAME * size else 0.0 for number in (self.value, self.right)
-        )
-        where = f"in the formula of {'xy'[self.column]}, {PRODUCTS[self.product]}"
+        """Return the sentence that reports it; numbers that are small beside a size in m are 0."""
+        value = self.value if abs(self.value) > _SAME * size else 0.0
+        right = self.right if abs(self.right) > _SAME * size else 0.0
+        where = f"in the formula of {'xy'[self.column]}, {_PRODUCTS[self.product]}"
         return f"{where} has {value:.6g} m where the model has {right:.6g} m"
 
 
 @dataclass(frozen=True)
-class Formula:
-    """Products of two rates: ω and β in rad/s, coefficients of x and y in m in the order of `PRODUCTS`, shape (5, 2).
+class _Formula:
+    """The products of two rates, with their coefficients.
 
     Attributes:
-        omega: of the swing.
-        beta: of the plane.
-        coefficients: of the products.
-        rest: root mean square of what the formula leaves, in m.
+        omega: rate of the swing in rad/s.
+        beta: rate of the plane in rad/s.
+        coefficients: of x and y in m, in the order of `_PRODUCTS`, shape (5, 2).
+        rest: root mean square of the residuals in m.
     """
 
     omega: float
@@ -83,120 +91,141 @@ class Formula:
     rest: float
 
     @property
-    def mirrored(self) -> Formula:
+    def mirrored(self) -> _Formula:
         """The same formula with the other sign of β."""
         signs = np.array([[1], [-1], [1], [-1], [1]])
         return replace(self, beta=-self.beta, coefficients=self.coefficients * signs)
 
-    def slips(self, right: Program, released: float, same: float) -> list[Slip]:
+    def slips(self, right: Program, released: float, same: float) -> list[_Slip]:
         """Return the coefficients that differ by more than `same` from those of a linear model.
 
-        There are none where one is off slightly: an integrator's step does that. The model's own are those of
-        e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt), whose v0 has a multiple of rest against the stars, -iβ z0.
+        There are none if a coefficient differs slightly: an integrator's step does that. The
+        model's own are those of e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt). Its v0 contains
+        `released` times the velocity of rest against the stars, -iβ z0.
         """
         start = complex(right.x, right.y)
         speed = complex(right.vx, right.vy) - 1j * self.beta * released * start
         push = (speed + 1j * self.beta * start) / self.omega
         model = np.array([start, -1j * start, push, -1j * push, 0j])
         expected = np.column_stack([model.real, model.imag])
-        off = np.abs(self.coefficients - expected)
-        if ((off > same) & (off < SLIGHT * np.abs(self.coefficients).max())).any():
+
+        difference = np.abs(self.coefficients - expected)
+        differs = difference > same
+        slightly = difference < _SLIGHT * np.abs(self.coefficients).max()
+        if (differs & slightly).any():
             return []
-        places = np.argwhere(off > same).tolist()
-        return [
-            Slip(
-                column,
-                product,
-                float(self.coefficients[product, column]),
-                float(expected[product, column]),
-            )
-            for product, column in places
-        ]
+        slips = []
+        for product, column in np.argwhere(differs).tolist():
+            value = float(self.coefficients[product, column])
+            slips.append(_Slip(column, product, value, float(expected[product, column])))
+        return slips
 
 
 def of_formula(case: FileCase) -> Explanation | None:
-    """Return what is known of rows that follow a closed formula with a slip; None if they do not, or with too many."""
-    formula = fit_formula(case.rows, case.right)
+    """Return the explanation of rows that follow a closed formula with a slip.
+
+    None if they do not, or with too many slips.
+    """
+    formula = _fit_formula(case.rows, case.right)
     if formula is None or formula.rest > NEEDED * case.resolution:
         return None
     size = float(np.hypot(case.right.x, case.right.y))
-    same = max(SAME * size, 10 * case.rows.noise)
-    explanations = []
-    for turned in (formula, formula.mirrored):
-        for released in RELEASES:
-            slips = turned.slips(case.right, released, same)
-            if not 0 < len(slips) <= MOST:
+    same = max(_SAME * size, 10 * case.rows.noise)
+    best: Explanation | None = None
+    fewest = _MOST + 1
+    for signed in (formula, formula.mirrored):
+        for released in _RELEASES:
+            slips = signed.slips(case.right, released, same)
+            if not 0 < len(slips) <= _MOST:
                 continue
-            explanation = _of_slips(case, turned, slips)
-            if explanation is not None:
+            explanation = _explanation_with(case, signed, slips)
+            if explanation is not None and len(slips) < fewest:
                 text = "; ".join(slip.sentence(size) for slip in slips)
                 slipped = f"It follows a closed formula with a slip: {text}."
-                explanations.append((len(slips), replace(explanation, slip=slipped)))
-    return min(explanations, key=lambda pair: pair[0], default=(0, None))[1]
+                best = replace(explanation, slip=slipped)
+                fewest = len(slips)
+    return best
 
 
-def _of_slips(case: FileCase, formula: Formula, slips: list[Slip]) -> Explanation | None:
-    """Return what is known of rows whose slips are put right; None unless all of that is certain."""
+def _explanation_with(case: FileCase, formula: _Formula, slips: list[_Slip]) -> Explanation | None:
+    """Return the explanation of rows with their slips corrected; None unless all is certain."""
     basis = _basis(case.rows.times, formula.omega, formula.beta)
     positions = case.rows.plane.copy()
     for slip in slips:
         positions[:, slip.column] += (slip.right - slip.value) * basis[:, slip.product]
     rows = replace(case.rows, positions=positions, cord=None)
-    mended = replace(case, rows=rows, truth=case.truth[:, :2])
-    explanation, _ = explanation_of(mended, readings_of(mended, stepped=True))
+    corrected = replace(case, rows=rows, truth=case.truth[:, :2])
+    explanation, _ = explanation_of(corrected, readings_of(corrected, stepped=True))
     certain = explanation.causes and len(explanation.known) == len(explanation.causes)
     return explanation if certain and explanation.corrected_m <= case.enough else None
 
 
-def fit_formula(rows: FileRows, right: Program) -> Formula | None:
-    """Return the formula that leaves least, from the rates of the scene's own swing; None if the rows are too few.
+def _fit_formula(rows: FileRows, right: Program) -> _Formula | None:
+    """Return the formula that leaves least, starting from the rates of the scene's own swing.
 
-    The span grows, so that no turn of the phase is lost. A formula and its mirror image leave as much: one is fitted.
+    None if there are too few rows. The span grows, so that no turn of the phase is lost. A formula
+    and its mirror image leave as much: one of them is returned.
     """
     beta = right.rate * math.sin(math.radians(right.latitude))
-    if len(rows.times) < LEAST or not right.g or not beta:
+    if len(rows.times) < _LEAST or not right.g or not beta:
         return None
-    times, plane = rows.times, rows.plane
-    rates, left = np.array([math.sqrt(right.g / right.length), -abs(beta)]), math.inf
-    hold = HELD * float(np.abs(plane).max())
-    for count in windows(times, WINDOW, LEAST, LEAST):
-        model = partial(_left, times[:count], plane[:count], hold * math.sqrt(count))
-        rates, left = gauss_newton(model, rates, steps=STEPS, gain=GAIN)
-        if not math.isfinite(left):
+    times = rows.times
+    plane = rows.plane
+    rates = np.array([math.sqrt(right.g / right.length), -abs(beta)])
+    norm_m = math.inf
+    hold = _HELD * float(np.abs(plane).max())
+    for count in windows(times, _WINDOW, _LEAST, _LEAST):
+        model = partial(_residuals, times[:count], plane[:count], hold * math.sqrt(count))
+        rates, norm_m = gauss_newton(model, rates, steps=_STEPS, gain=_GAIN)
+        if not math.isfinite(norm_m):
             return None
     omega, beta = rates.tolist()
-    return Formula(
-        omega, beta, solved(_basis(times, omega, beta), plane, FLAT), left / math.sqrt(len(times))
-    )
+    coefficients = solved(_basis(times, omega, beta), plane, _FLAT)
+    return _Formula(omega, beta, coefficients, norm_m / math.sqrt(len(times)))
 
 
 def _basis(times: Array, omega: float, beta: float) -> Array:
-    a, b = omega * times, beta * times
-    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
-    return np.column_stack([ca * cb, ca * sb, sa * cb, sa * sb, np.ones_like(times)])
+    """Return the values of `_PRODUCTS`, shape (times, 5)."""
+    cos_swing = np.cos(omega * times)
+    sin_swing = np.sin(omega * times)
+    cos_turn = np.cos(beta * times)
+    sin_turn = np.sin(beta * times)
+    products = [
+        cos_swing * cos_turn,
+        cos_swing * sin_turn,
+        sin_swing * cos_turn,
+        sin_swing * sin_turn,
+        np.ones_like(times),
+    ]
+    return np.column_stack(products)
 
 
 def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Iterator[Array]:
     """Yield d rows / d ω and d rows / d β, each of shape (rows, 2)."""
     cc, cs, sc, ss, constant = _basis(times, omega, beta).T
     zero = np.zeros_like(constant)
-    for changed in ([-sc, -ss, cc, cs, zero], [-cs, cc, -ss, sc, zero]):
-        yield times[:, None] * (np.column_stack(changed) @ coefficients)
+    by_omega = [-sc, -ss, cc, cs, zero]
+    by_beta = [-cs, cc, -ss, sc, zero]
+    for products in (by_omega, by_beta):
+        yield times[:, None] * (np.column_stack(products) @ coefficients)
 
 
-def _left(
+def _residuals(
     times: Array, plane: Array, hold: float, rates: Array
 ) -> tuple[Array, Callable[[], Array]]:
-    """Return what products of two rates leave, and its slopes by the rates, each held, then by the coefficients."""
+    """Return the residuals of products of two rates, and their slopes.
+
+    The slopes are by the rates, each of them held, then by the coefficients.
+    """
     omega, beta = rates.tolist()
     basis = _basis(times, omega, beta)
-    coefficients = solved(basis, plane, FLAT)
+    coefficients = solved(basis, plane, _FLAT)
 
     def slopes() -> Array:
-        moved = np.column_stack(
-            [slope.ravel() for slope in _slopes(times, omega, beta, coefficients)]
-        )
-        matrix = np.column_stack([moved, np.kron(basis, np.eye(2))])
+        columns = [slope.ravel() for slope in _slopes(times, omega, beta, coefficients)]
+        by_coefficients = np.kron(basis, np.eye(2))
+        matrix = np.column_stack([*columns, by_coefficients])
         return np.vstack([matrix, hold * np.eye(2, matrix.shape[1])])
 
-    return np.concatenate([(plane - basis @ coefficients).ravel(), np.zeros(2)]), slopes
+    residuals = (plane - basis @ coefficients).ravel()
+    return np.concatenate([residuals, np.zeros(2)]), slopes

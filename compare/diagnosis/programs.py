@@ -1,8 +1,9 @@
-"""Programs: the numbers of a scene as a program may read them, its choices, the `theta` that follows, its motion.
+"""Programs: a scene's numbers as a program reads them, its choices, its `theta` and its motion.
 
-A `Program` is the scene's numbers and a handful of choices; each mistake changes one of them. `theta` is what the
-motion depends on (`NAMES`), so that many programs are compared with one fit without running any. A `SphericalPendulum`
-runs one: it swings on the sphere by a free vector Ω and a free pull, whatever a program calls them.
+A `Program` has the scene's numbers and a handful of choices; each mistake changes one of them. The
+motion depends on the numbers of `theta` (`NAMES`), so that many programs are compared with one fit
+without running any. A `SphericalPendulum` runs a theta: it swings on the sphere with a free vector
+Ω and a free pull, whatever a program calls them.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
@@ -24,11 +25,25 @@ from ..observed.least_squares import by_differences
 from .phasors import FixedStepMethod, Phasors
 
 NAMES = (
-    "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",
+    "turn_x",
+    "turn_y",
+    "turn_z",
+    "pull_x",
+    "pull_y",
+    "pull_z",
+    "drag",
+    "x",
+    "y",
+    "vx",
+    "vy",
+    "length",
+    "gradient",
     "point_mass",
-)  # fmt: skip
-PER_SECOND, PER_SECOND_SQUARED = [0, 1, 2, 6, 9, 10], [3, 4, 5]
-HIGHEST = 12000.0  # m, above and below the ellipsoid: nobody hangs a pendulum farther out
+)
+# indices of the numbers with such a unit
+_PER_SECOND = [0, 1, 2, 6, 9, 10]
+_PER_SECOND_SQUARED = [3, 4, 5]
+_HIGHEST = 12000.0  # m above or below the ellipsoid: no pendulum hangs farther away
 
 
 @dataclass(frozen=True)
@@ -36,22 +51,25 @@ class Program:
     """The numbers and choices of a program; SI units, angles in degrees.
 
     Attributes:
-        gravity_reading: what it makes of g: ellipsoid (the centrifugal force added), effective (it is within, its
-            change along the swing kept), none (no centrifugal force), no_tilt (its vertical part alone), tilt (its
-            horizontal part alone), tilt_no_sine (that part without sin φ), uniform (no change along the swing).
+        gravity_reading: how it treats the centrifugal force: ellipsoid (added to g), effective
+            (contained in g, its change along the swing kept), none (left out), no_tilt (its
+            vertical part alone), tilt (its horizontal part alone), tilt_no_sine (that part
+            without sin φ), uniform (without its change along the swing).
         coriolis: factors of the Coriolis force's Ωy and Ωz, and of both.
-        coriolis_latitude: the latitude of the Coriolis force in degrees, if it is another one; of any size.
-        turned_plane: a pendulum that does not feel the rotation, its plane turned by hand.
+        coriolis_latitude: the latitude of the Coriolis force in degrees, of any size; None if it
+            is that of the site.
+        turned_plane: whether it ignores the rotation and turns the plane of its swing by hand.
         released: velocity of the release over that of a bob at rest against the stars.
         frame: matrix of the horizontal axes, rows are the program's x and y in east and north.
-        point_mass: gravity falls off with 1/r² and points to the centre.
-        kind: sphere; linear, whose restoring force is that of small swings; or angle, linear in the angle.
+        point_mass: 1 if gravity falls off with 1/r² and points to the centre, else 0.
+        kind: sphere; linear, with the restoring force of small swings; or angle, linear in the
+            angle of the cord.
         late: time in s by which the rows are late.
-        pace: of its time over that of its clock.
+        pace: its time over that of its clock.
         method: its integrator, with the `step` in s.
-        nominal_rate: the scene's rotation rate, of which the gradient in theta is a part.
-        phase_gain: share by which its integrator makes the swing too fast.
-        decay_rate: rate in 1/s that its integrator adds to the drag; negative where the swing grows.
+        nominal_rate: the scene's rotation rate, for which the gradient in theta is 1.
+        phase_gain: relative error of the swing's frequency that its integrator causes.
+        decay_rate: rate in 1/s that its integrator adds to the drag; negative if the swing grows.
     """
 
     g: float
@@ -84,120 +102,173 @@ class Program:
 
     @classmethod
     def of(cls, inputs: Inputs, start: Array) -> Program:
-        """Return the right program of a scene; `start` is x, y, z, vx, vy, vz at the release in m and m/s."""
-        same = (
-            "length",
-            "latitude",
-            "flattening",
-            "altitude",
-            "drag",
-            "gravity",
-            "rotation_rate",
-            "equatorial_radius",
-        )
-        words = {"gravity": "g", "rotation_rate": "rate", "equatorial_radius": "radius"}
-        fields: dict[str, Any] = {
-            words.get(name, name): float(getattr(inputs, name)) for name in same
-        }
+        """Return the right program of a scene.
+
+        `start` is x, y, z, vx, vy, vz at the release in m and m/s.
+        """
         x, y, _, vx, vy, _ = start.tolist()
-        fields |= {"x": x, "y": y, "vx": vx, "vy": vy, "nominal_rate": fields["rate"]}
-        return cls(gravity_reading=inputs.gravity_is, **fields)
+        rate = float(inputs.rotation_rate)
+        return cls(
+            g=float(inputs.gravity),
+            length=float(inputs.length),
+            latitude=float(inputs.latitude),
+            rate=rate,
+            radius=float(inputs.equatorial_radius),
+            flattening=float(inputs.flattening),
+            altitude=float(inputs.altitude),
+            drag=float(inputs.drag),
+            x=x,
+            y=y,
+            vx=vx,
+            vy=vy,
+            gravity_reading=inputs.gravity_is,
+            nominal_rate=rate,
+        )
 
     @property
     def axis_distance(self) -> float:
         """R, the distance of the suspension from the axis of rotation, in m."""
         phi = math.radians(self.latitude)
         e2 = self.flattening * (2 - self.flattening)
-        return (self.radius / math.sqrt(1 - e2 * math.sin(phi) ** 2) + self.altitude) * math.cos(
-            phi
-        )
+        prime_vertical_radius = self.radius / math.sqrt(1 - e2 * math.sin(phi) ** 2)
+        return (prime_vertical_radius + self.altitude) * math.cos(phi)
 
     @property
     def sensible(self) -> bool:
         """False if an input is outside its domain, so that no program can have it."""
-        inside = (
-            self.x * self.x + self.y * self.y < self.length * self.length or self.kind == "linear"
-        )
+        reachable = self.x * self.x + self.y * self.y < self.length * self.length
         return (
-            self.g >= 0 and self.length > 0 and self.drag >= 0 and abs(self.latitude) <= 90 and inside
-            and self.radius >= 0 and abs(self.altitude) <= HIGHEST and self.step >= 0 and math.isfinite(self.rate)
-        )  # fmt: skip
+            self.g >= 0
+            and self.length > 0
+            and self.drag >= 0
+            and abs(self.latitude) <= 90
+            and (reachable or self.kind == "linear")
+            and self.radius >= 0
+            and abs(self.altitude) <= _HIGHEST
+            and self.step >= 0
+            and math.isfinite(self.rate)
+        )
 
     @property
     def gradient(self) -> float:
-        """Share of the centrifugal force's change along the swing that it takes into account: 1 or 0."""
+        """1 if it takes the centrifugal force's change along the swing into account, else 0."""
         return float(self.gravity_reading in ("ellipsoid", "effective", "tilt", "tilt_no_sine"))
 
     @property
     def gradient_square(self) -> tuple[float, float, float, float]:
-        """xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, the centrifugal force's change along the swing, in 1/s²."""
+        """xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, the gradient of the centrifugal force, in 1/s²."""
         phi = math.radians(self.latitude)
-        north, up = self.rate * math.cos(phi), self.rate * math.sin(phi)
+        north = self.rate * math.cos(phi)
+        up = self.rate * math.sin(phi)
         return self.rate**2, up * up, -north * up, north * north
 
     def _exact(self) -> Array:
-        """Return theta as an exact integration of the equations has it."""
-        phi = math.radians(self.latitude)
-        sin, cos = math.sin(phi), math.cos(phi)
-        turned = phi if self.coriolis_latitude is None else math.radians(self.coriolis_latitude)
-        north = self.rate * math.cos(turned) * self.coriolis[0] * self.coriolis[2]
-        up = self.rate * math.sin(turned) * self.coriolis[1] * self.coriolis[2]
-        outward = self.rate**2 * self.axis_distance
-        pull_y, pull_z, gradient = 0.0, -self.g, self.gradient
-        if self.gravity_reading in ("ellipsoid", "uniform", "tilt"):
-            pull_y = -outward * sin
-        elif self.gravity_reading == "tilt_no_sine":
-            pull_y = -outward
-        if self.gravity_reading in ("ellipsoid", "uniform", "tilt_no_sine", "no_tilt"):
-            pull_z += outward * cos
+        """Return theta of an exact integration of the equations."""
+        north, up = self._turn()
+        pull_y, pull_z = self._pull()
+        vx, vy = self._release_velocity()
+        gradient = self.gradient
         if self.nominal_rate:
             gradient *= (self.rate / self.nominal_rate) ** 2
-        # a plane turned by hand takes its own turn with it; else the Earth's, without a factor of the Coriolis force
-        stars = self.released * (
-            up if self.turned_plane else self.rate * math.sin(turned) * self.coriolis[1]
-        )
-        vx, vy = self.vx + stars * self.y, self.vy - stars * self.x
         if self.turned_plane:
             north = 0.0
+
+        # in the program's axes; Ω is a pseudovector
         a, b, c, d = self.frame
-        hand = a * d - b * c
+        handedness = a * d - b * c
         theta = np.array(
             [
-                hand * b * north, hand * d * north, hand * up,
-                b * pull_y / self.length, d * pull_y / self.length, pull_z / self.length,
-                self.drag, self.x, self.y, vx, vy, self.length, gradient, self.point_mass * self.g / abs(pull_z or 1.0),
+                handedness * b * north,
+                handedness * d * north,
+                handedness * up,
+                b * pull_y / self.length,
+                d * pull_y / self.length,
+                pull_z / self.length,
+                self.drag,
+                self.x,
+                self.y,
+                vx,
+                vy,
+                self.length,
+                gradient,
+                self.point_mass * self.g / abs(pull_z or 1.0),
             ]
-        )  # fmt: skip
+        )
         if self.pace != 1:
-            theta[PER_SECOND] *= self.pace
-            theta[PER_SECOND_SQUARED] *= self.pace**2
+            theta[_PER_SECOND] *= self.pace
+            theta[_PER_SECOND_SQUARED] *= self.pace**2
             theta[NAMES.index("gradient")] *= self.pace**2
-        theta[PER_SECOND_SQUARED] *= (1 + self.phase_gain) ** 2
+        theta[_PER_SECOND_SQUARED] *= (1 + self.phase_gain) ** 2
         theta[NAMES.index("drag")] += self.decay_rate
         return theta
 
+    def _coriolis_phi(self) -> float:
+        """Return the latitude of the Coriolis force in rad."""
+        other = self.coriolis_latitude
+        return math.radians(self.latitude if other is None else other)
+
+    def _turn(self) -> tuple[float, float]:
+        """Return Ωy and Ωz of the Coriolis force in rad/s."""
+        phi = self._coriolis_phi()
+        by_north, by_up, by_both = self.coriolis
+        north = self.rate * math.cos(phi) * by_north * by_both
+        up = self.rate * math.sin(phi) * by_up * by_both
+        return north, up
+
+    def _pull(self) -> tuple[float, float]:
+        """Return the northward and the upward acceleration at the suspension in m/s²."""
+        phi = math.radians(self.latitude)
+        outward = self.rate**2 * self.axis_distance
+        north = 0.0
+        up = -self.g
+        if self.gravity_reading in ("ellipsoid", "uniform", "tilt"):
+            north = -outward * math.sin(phi)
+        elif self.gravity_reading == "tilt_no_sine":
+            north = -outward
+        if self.gravity_reading in ("ellipsoid", "uniform", "tilt_no_sine", "no_tilt"):
+            up += outward * math.cos(phi)
+        return north, up
+
+    def _release_velocity(self) -> tuple[float, float]:
+        """Return vx and vy of the release in m/s."""
+        # a plane turned by hand has its own rate; otherwise it is the Earth's, without a factor of
+        # the whole Coriolis force
+        if self.turned_plane:
+            _, rate = self._turn()
+        else:
+            rate = self.rate * math.sin(self._coriolis_phi()) * self.coriolis[1]
+        stars = self.released * rate
+        return self.vx + stars * self.y, self.vy - stars * self.x
+
     def _computed(self, theta: Array) -> Phasors:
-        square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
-        # the mean of x and y: what it does to each is no matter of phasors
+        """Return the two phasors that its rows show, the effect of its integrator included."""
+        square = -theta[5]
+        if self.turned_plane:
+            square -= theta[2] ** 2
+        # phasors have one ω²: the mean of those of x and y
         if self.kind != "sphere" and theta[12]:
             xx, yy, *_ = self.gradient_square
             square -= (xx + yy) / 2
         start = complex(theta[7], theta[8])
         if self.kind == "angle" and start:
-            out = abs(start) / self.length
-            start = start * math.asin(min(out, 1.0)) / out
+            sine = abs(start) / self.length
+            start = start * math.asin(min(sine, 1.0)) / sine
         phasors = phasors_of(theta, square, start)
         if self.method is not None and self.step > 0:
             phasors = self.method.computed(phasors, self.step)
         return phasors.later(self.late) if self.late else phasors
 
     def phasors(self) -> Phasors:
-        """Return the motion of a linear program; of one that is linear in the angle, the cord's angle times l."""
+        """Return the motion of a linear program.
+
+        For one that is linear in the angle, it is the cord's angle times l.
+        """
         return self._computed(self._exact())
 
     def theta(self) -> Array:
         """Return the numbers that the motion depends on, in the order of `NAMES`."""
-        theta, stepped = self._exact(), self.method is not None or self.late
+        theta = self._exact()
+        stepped = self.method is not None or self.late
         if not stepped and not self.turned_plane and self.kind == "sphere":
             return theta
         computed = theta_of(self._computed(theta), theta)
@@ -206,11 +277,11 @@ class Program:
         return computed
 
     def changed(self, **fields: object) -> Self:
-        """Return the program with some fields replaced: as `replace` does it, in a tenth of the time."""
-        made = object.__new__(type(self))
-        vars(made).update(vars(self) | fields)
-        vars(made).pop("programs", None)  # of a joint one, kept of the program as it was
-        return made
+        """Return the program with some fields replaced, like `replace` in a tenth of the time."""
+        program = object.__new__(type(self))
+        vars(program).update(vars(self) | fields)
+        vars(program).pop("programs", None)  # the cached programs of a joint one
+        return program
 
     def with_inputs(self, names: Sequence[str], values: Array) -> Self:
         """Return the program with these numbers replaced."""
@@ -218,17 +289,24 @@ class Program:
 
 
 def phasors_of(theta: Array, square: float, start: complex) -> Phasors:
-    """Return the two phasors of a linear model with the numbers of theta, but for ω² and the position at t = 0."""
+    """Return the two phasors of a linear model.
+
+    ω² and the position at t = 0 are given, all other numbers are those of theta.
+    """
     centre = complex(theta[3], theta[4]) * theta[11] / square if square else 0j
     return Phasors.of(theta[2], square, theta[6], centre, start, complex(theta[9], theta[10]))
 
 
 def theta_of(phasors: Phasors, theta: Array) -> Array:
-    """Return theta with the numbers that two phasors tell in place of its own."""
-    changed, pull = theta.copy(), phasors.centre * phasors.square.real / theta[11]
-    changed[2], changed[6], changed[5] = phasors.beta, phasors.drag, -phasors.square.real
+    """Return theta, the numbers that two phasors determine replaced by theirs."""
+    changed = theta.copy()
+    pull = phasors.centre * phasors.square.real / theta[11]
+    changed[2] = phasors.beta
     changed[3:5] = pull.real, pull.imag
-    changed[7:11] = phasors.start.real, phasors.start.imag, phasors.speed.real, phasors.speed.imag
+    changed[5] = -phasors.square.real
+    changed[6] = phasors.drag
+    changed[7:9] = phasors.start.real, phasors.start.imag
+    changed[9:11] = phasors.speed.real, phasors.speed.imag
     return changed
 
 
@@ -250,49 +328,53 @@ class SphericalPendulum:
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
-        rate = (
-            float(np.abs(theta[0:3]).max())
-            + abs(theta[6])
-            + math.sqrt(float(np.abs(theta[3:6]).max()))
-        )
-        reached = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
-        if not reached or not np.isfinite(theta).all() or rate > self.fastest:
+        fastest_turn = float(np.abs(theta[0:3]).max())
+        fastest_swing = math.sqrt(float(np.abs(theta[3:6]).max()))
+        rate = fastest_turn + abs(theta[6]) + fastest_swing
+        reachable = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
+        if not reachable or not np.isfinite(theta).all() or rate > self.fastest:
             return np.full((len(times), columns), np.nan)
         try:
-            span = times if times[0] == 0 else np.concatenate([[0.0], times])
-            states = self.model.run(self.start(theta).tolist(), span, self.constants(theta))
+            from_release = times if times[0] == 0 else np.concatenate([[0.0], times])
+            start = self.start(theta).tolist()
+            states = self.model.run(start, from_release, self.constants(theta))
         except (FoucaultError, ValueError, ArithmeticError):
             return np.full((len(times), columns), np.nan)
         return np.asarray(states[-len(times) :, :columns])
 
     def constants(self, theta: Array) -> Constants:
         """Return the constants of the force."""
-        length, gradient, point = theta[11:14]
-        pointing = point * abs(theta[5]) * length / self.radius if self.radius else 0.0
+        length, gradient, point_mass = theta[11:14]
+        # gravity that falls off with 1/r² and points to the centre has a gradient like that of
+        # the centrifugal force
+        falloff = point_mass * abs(theta[5]) * length / self.radius if self.radius else 0.0
         xx, yy, yz, zz = (gradient * component for component in self.square)
-        turn, pull = (tuple(vector.tolist()) for vector in (theta[:3], theta[3:6]))
-        centrifugal = xx - pointing, yy - pointing, yz, zz + 2 * pointing
         return Constants(
             length=float(length),
-            turn=turn,
-            pull=pull,
-            centrifugal=centrifugal,
+            turn=tuple(theta[:3].tolist()),
+            pull=tuple(theta[3:6].tolist()),
+            centrifugal=(xx - falloff, yy - falloff, yz, zz + 2 * falloff),
             drag=float(theta[6]),
         )
 
     def start(self, theta: Array) -> Array:
-        """Return position and velocity of the release over the length, below the suspension and along the sphere.
+        """Return position and velocity of the release on the sphere, over the length.
 
-        They are NaN where the cord does not reach it.
+        The release is below the suspension. They are NaN where the cord does not reach it.
         """
         x, y, vx, vy = theta[7:11]
-        z = -np.sqrt(theta[11] ** 2 - x * x - y * y)
-        return np.asarray(np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / theta[11])
+        length = theta[11]
+        z = -np.sqrt(length**2 - x * x - y * y)
+        vz = -(x * vx + y * vy) / z
+        return np.asarray(np.array([x, y, z, vx, vy, vz]) / length)
 
     def slopes(
         self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array
     ) -> Array:
-        """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""
+        """Return d rows / d theta times `scales`, shape (times * columns, 14).
+
+        They are differences; each number of theta is moved by `nudges` scales.
+        """
 
         def rows_of(change: Array) -> Array:
             return self.rows(theta + scales * change, times, columns).ravel()

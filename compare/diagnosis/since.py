@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from .case import AS_IF
 from .thresholds import OF_A_CHANGE
 
-STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
-SAME = 1e-9  # relative difference of two inputs that count as one
-STEP = "step"
-Document = Mapping[str, Any]  # of a score, or of a convention or cause in it
+_STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
+_SAME = 1e-9  # relative difference of two inputs that count as one
+_STEP = "step"
+_Document = Mapping[str, Any]  # of a score, or of a convention or cause in it
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class Since:
         name: of the baseline.
         before_m: its largest position error in m, over the span that both have.
         after_m: that of the candidate.
-        apart_m: the largest distance in m between both, of a document the difference of their errors; 0 if it is no
-            more than rounding.
+        apart_m: the largest distance in m between both, or the difference of their errors if the
+            baseline is a document; 0 if it is no more than rounding.
         worse: what became worse by more than the tolerance; empty if nothing did.
         gains: what became better by more than the tolerance; empty if nothing did.
         changes: what came and what went.
@@ -50,35 +50,44 @@ class Since:
     @property
     def text(self) -> str:
         """All of it in a line."""
-        word = "Worse since" if self.worse else "Better since" if self.better else "Since"
-        numbers = f"{self.before_m:.3g} → {self.after_m:.3g} m"
+        begin = "Since"
+        if self.worse:
+            begin = "Worse since"
+        elif self.better:
+            begin = "Better since"
+        errors = f"{self.before_m:.3g} → {self.after_m:.3g} m"
         if self.changes:
-            left = "not all of it" if self.left_m is None else f"all but {self.left_m:.2g} m"
-            rest = "nothing else" if self.complete else f"that explains {left}"
-            what = f"{'; '.join(self.changes)}: {numbers}; {rest}"
+            change = f"{'; '.join(self.changes)}: {errors}; {self._explained}"
         elif self.apart_m:
-            what = f"{numbers}; what lies between them, {self.apart_m:.2g} m, is no known mistake"
+            change = f"{errors}; what lies between them, {self.apart_m:.2g} m, is no known mistake"
         else:
-            what = f"no position changed, {numbers}"
-        return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in (*self.worse, *self.gains))}"
+            change = f"no position changed, {errors}"
+        reasons = "".join(f"; {reason}" for reason in (*self.worse, *self.gains))
+        return f"{begin} {self.name}: {change}{reasons}"
+
+    @property
+    def _explained(self) -> str:
+        """How much of the difference the changes explain."""
+        if self.complete:
+            return "nothing else"
+        if self.left_m is None:
+            return "that explains not all of it"
+        return f"that explains all but {self.left_m:.2g} m"
 
 
-def _is_doubtful(deviation: Document) -> bool:
+def _is_doubtful(deviation: _Document) -> bool:
     """Return whether the motion is merely like that, or it is one of several."""
     return str(deviation["id"]).startswith(AS_IF) or "|" in deviation["id"]
 
 
-def _known(document: Document) -> Iterator[Document]:
-    """Yield the conventions and causes that are certain of a document's candidate, and its slip."""
+def _known(document: _Document) -> Iterator[_Document]:
+    """Yield the conventions and causes of a document's candidate that are certain, and its slip."""
     for deviation in (*document["conventions"], *document["causes"]):
         if deviation["text"].startswith("your ") and not _is_doubtful(deviation):
             yield deviation
     if document["slip"]:
-        yield {
-            "id": "slip",
-            "text": f"your program has a slip ({document['slip'].rstrip('.')})",
-            "size_m": 0.0,
-        }
+        text = f"your program has a slip ({document['slip'].rstrip('.')})"
+        yield {"id": "slip", "text": text, "size_m": 0.0}
 
 
 @dataclass(frozen=True)
@@ -90,19 +99,19 @@ class Version:
         error_m: over the span that both versions have.
     """
 
-    document: Document
+    document: _Document
     error_m: float
 
     @property
     def left_m(self) -> float:
-        """The error in m that remains once its causes are put right; the whole error if no cause is known."""
+        """The error in m that remains without its causes; the whole error if no cause is known."""
         return float((self.document["corrected"] or {"max_error_m": self.error_m})["max_error_m"])
 
 
 def explain_change(
     old: Version, new: Version, apart_m: float, most_m: float
 ) -> tuple[tuple[str, ...], float | None]:
-    """Return what came and what went, and what that leaves of both errors, in m; None where nothing is known.
+    """Return what came and what went, and what that leaves of both errors in m; None if unknown.
 
     Args:
         old: the baseline.
@@ -120,63 +129,77 @@ def explain_change(
     return texts, left_m
 
 
-def _unexplained_m(then: Document, now: Document) -> float:
-    """Return how far in m numbers that only one of two documents has may move the bob, their cause not known."""
-    here, there = (
-        [cause for cause in document["causes"] if _is_doubtful(cause)] for document in (then, now)
-    )
-    pairs = [(cause, there) for cause in here] + [(cause, here) for cause in there]
-    return float(
-        sum(
-            cause["size_m"]
-            for cause, causes in pairs
-            if not any(_is_same(cause, other) for other in causes)
-        )
-    )
+def _unexplained_m(old: _Document, new: _Document) -> float:
+    """Return how far in m doubtful numbers of only one of two documents may move the bob."""
+    old_causes = [cause for cause in old["causes"] if _is_doubtful(cause)]
+    new_causes = [cause for cause in new["causes"] if _is_doubtful(cause)]
+    came = [cause for cause in new_causes if not _is_in(cause, old_causes)]
+    went = [cause for cause in old_causes if not _is_in(cause, new_causes)]
+    return float(sum(cause["size_m"] for cause in [*went, *came]))
 
 
 def _changes(old: Version, new: Version, most_m: float) -> Iterator[str]:
     """Yield what came and what went; a number that changed has come."""
-    before, after = list(_known(old.document)), list(_known(new.document))
-    came = [
-        deviation for deviation in after if not any(_is_same(deviation, other) for other in before)
-    ]
-    went = [deviation for deviation in before if _kind(deviation) not in map(_kind, after)]
-    for when, deviations, hidden in (("now", came, old.left_m), ("no longer", went, new.left_m)):
-        for deviation in deviations:
-            # a smaller one may be hidden in what the causes of the other version leave
-            if 0 < deviation["size_m"] <= hidden or deviation["size_m"] > most_m:
-                continue
-            if deviation["id"] == "off_the_sphere" and STEP in map(_kind, deviations):
-                continue  # a step takes the bob off the sphere
-            text = deviation["text"].partition(" (--set")[0]  # which is advice for a verdict
-            text = text.replace("your program", f"it {when}", 1).replace(
-                "your file", f"its file {when}", 1
-            )
-            yield (
-                text
-                if _kind(deviation) != STEP
-                else f"the step ({text})"
-                if when == "now"
-                else "the step"
-            )
+    before = list(_known(old.document))
+    after = list(_known(new.document))
+    kinds = [_kind(deviation) for deviation in after]
+    came = [deviation for deviation in after if not _is_in(deviation, before)]
+    went = [deviation for deviation in before if _kind(deviation) not in kinds]
+    for deviation in _visible(came, old.left_m, most_m):
+        text = _changed(deviation, "now")
+        yield f"the step ({text})" if _kind(deviation) == _STEP else text
+    for deviation in _visible(went, new.left_m, most_m):
+        yield "the step" if _kind(deviation) == _STEP else _changed(deviation, "no longer")
 
 
-def _kind(deviation: Document) -> str:
+def _visible(
+    deviations: Sequence[_Document], hidden_m: float, most_m: float
+) -> Iterator[_Document]:
+    """Yield the deviations of one version that the other would show.
+
+    Args:
+        deviations: that only one version has.
+        hidden_m: what the causes of the other leave of its error in m: it may hide smaller ones.
+        most_m: how far in m a cause may move the bob that came or went.
+    """
+    kinds = [_kind(deviation) for deviation in deviations]
+    for deviation in deviations:
+        if 0 < deviation["size_m"] <= hidden_m or deviation["size_m"] > most_m:
+            continue
+        if deviation["id"] == "off_the_sphere" and _STEP in kinds:
+            continue  # a step takes the bob off the sphere
+        yield deviation
+
+
+def _changed(deviation: _Document, when: str) -> str:
+    """Return the sentence on a deviation, about a program that does so now, or no longer."""
+    text = deviation["text"].partition(" (--set")[0]  # which is advice for a verdict
+    text = text.replace("your program", f"it {when}", 1)
+    return str(text.replace("your file", f"its file {when}", 1))
+
+
+def _kind(deviation: _Document) -> str:
     """Return the word for a thing of which a program has one: a step, a gravity."""
-    kinds = {"integrator_": STEP, "gravity_": "site.gravity"}
-    return next(
-        (kind for begin, kind in kinds.items() if deviation["id"].startswith(begin)),
-        str(deviation["id"]),
-    )
+    if deviation["id"].startswith("integrator_"):
+        return _STEP
+    if deviation["id"].startswith("gravity_"):
+        return "site.gravity"
+    return str(deviation["id"])
 
 
-def _is_same(deviation: Document, other: Document) -> bool:
+def _is_in(deviation: _Document, deviations: Sequence[_Document]) -> bool:
+    """Return whether a deviation is one of several."""
+    return any(_is_same(deviation, other) for other in deviations)
+
+
+def _is_same(deviation: _Document, other: _Document) -> bool:
     """Return whether two conventions or causes say the same."""
-    value, was = deviation.get("value"), other.get("value")
-    if (value is None or was is None) and _kind(deviation) == _kind(other) == STEP:
-        return bool(1 / STEPS < deviation["size_m"] / other["size_m"] < STEPS)
-    if value is None or was is None:
+    new_value = deviation.get("value")
+    old_value = other.get("value")
+    if new_value is None or old_value is None:
+        if _kind(deviation) == _kind(other) == _STEP:
+            return bool(1 / _STEPS < deviation["size_m"] / other["size_m"] < _STEPS)
         return bool(deviation["text"] == other["text"])
-    doubt = sum(each.get("uncertainty") or 0.0 for each in (deviation, other)) + SAME * abs(value)
-    return bool(deviation["id"] == other["id"] and abs(value - was) <= doubt)
+    uncertainty = sum(document.get("uncertainty") or 0.0 for document in (deviation, other))
+    same = abs(new_value - old_value) <= uncertainty + _SAME * abs(new_value)
+    return bool(deviation["id"] == other["id"] and same)

@@ -1,15 +1,17 @@
-"""A slip in a program's force, read from its rows alone: a term that is off, or a bob that falls or swings ever wider.
+"""A slip in a program's force, read from its rows alone.
 
-Near its lowest point the bob's acceleration is nearly linear in x, y and their velocities. What the rows have more than
-the model is fitted by such terms, and the largest are named beside what the model has in their place. Needs rows close
-enough to be differentiated twice.
+The slip is a wrong term, or a bob that falls or swings ever wider.
+
+Near its lowest point the bob's acceleration is nearly linear in x, y and their velocities. The
+difference of the rows' acceleration from the model's is fitted by such terms, and the largest are
+named together with the model's own. The rows have to be close enough to be differentiated twice.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,82 +24,111 @@ from ..observed.least_squares import solved
 from .case import FileRows
 from .programs import Program
 
-FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
-SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
-# of order 4, whose difference from the other tells the error
-COARSE = np.array([-1, 16, -30, 16, -1]) / 12
-LEAST = 30  # rows that can be differentiated
-USUAL, FARTHEST = 0.15, 0.5  # steps between rows, in radians of the swing
-CLEAR = 10.0  # times their own error: accelerations that are off
-EXPLAINED = 0.02  # of the mean square that the terms named may leave
-MOST = 3  # terms that are named
-WORK = 0.2  # of |force| |velocity|: a force that does work
-ALIKE = 0.2  # by which two terms that are off alike may differ
-LOW = 0.3  # of the length: farther out, the force is not linear
-TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
-NUDGE = 1e-6
-# of the rows, and how many times as far as in the first a growing motion reaches in the last
-PARTS, GROWN = 4, 2.0
-FREELY = 0.5, 2.5  # of g: what a fall's mean acceleration is between, from row 0 to every other
+# stencils of order 6 for the first and the second derivative
+_FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
+_SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
+# of order 4: its difference from the other estimates the error
+_COARSE = np.array([-1, 16, -30, 16, -1]) / 12
+_LEAST = 30  # rows that can be differentiated
+_USUAL = 0.15  # rad of the swing: step between rows that are differentiated
+_FARTHEST = 0.5  # rad of the swing: the largest step
+_CLEAR = 10.0  # times their own error: accelerations that are wrong
+_EXPLAINED = 0.02  # of the mean square: what the terms named may leave
+_MOST = 3  # terms that are named
+_WORK = 0.2  # of |force| |velocity|: a force that does work
+_ALIKE = 0.2  # relative difference of two terms with the same error
+_LOW = 0.3  # of the length: farther out, the force is not linear
+_TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
+_NUDGE = 1e-6
+_PARTS = 4  # of the rows
+_GROWN = 2.0  # how many times as far as in the first part a growing motion reaches in the last
+_FREELY = (0.5, 2.5)  # of g: range of a fall's mean acceleration, from row 0 to every other row
 
 
 def slip(rows: FileRows, scene: Scene) -> str:
-    """Return which part of the force is off, as a sentence; empty if the rows do not tell."""
+    """Return a sentence on the part of the force that is wrong; empty if no row shows it."""
     k = constants_in_double(scene.exact)
-    rate = float(np.linalg.norm([float(part) for part in k.pull])) ** 0.5
-    motion = _differentiated(rows.times, rows.plane, rate)
+    swing_rate = float(np.linalg.norm([float(component) for component in k.pull])) ** 0.5
+    motion = _differentiated(rows.times, rows.plane, swing_rate)
     if motion is None:
         return ""
-    state, rates, error = motion
-    if not float(np.abs(state[:2]).max()) < LOW * k.length:
+    state = motion.state
+    if not float(np.abs(state[:2]).max()) < _LOW * k.length:
         return ""
-    # whatever g is taken for, a slip is what is off beside it
+    # whatever a program takes g for, a slip is an error beside that
     effective = replace(k, pull=(0, 0, -k.gravity), centrifugal=(0, 0, 0, 0))
-    k = min(k, effective, key=lambda constants: _size(rates - _model(state, constants)))
-    off = rates - _model(state, k)
-    size = _size(off)
-    if not size > CLEAR * error:
-        return ""
-    terms = list(_terms(state, off, k))
-    if not terms or _alike([(*term[:2], term[2] - term[3]) for term in terms]):
-        return ""
-    sentences = "; ".join(_sentence(*term) for term in terms)
-    power = np.mean(np.sum(off * state[2:], axis=0))
-    speed = float(np.sqrt(np.mean(state[2:] ** 2)))
-    work = (
-        " The difference does work, as no Coriolis force does."
-        if abs(power) > WORK * 2 * size * speed
-        else ""
+    k = min(
+        k, effective, key=lambda constants: _rms(motion.accelerations - _model(state, constants))
     )
-    taken = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
-    return (
-        f"Its accelerations differ from the model's{taken} by {size:.2g} m/s²: {sentences}.{work}"
-    )
+    errors = motion.accelerations - _model(state, k)
+    size = _rms(errors)
+    if not size > _CLEAR * motion.error:
+        return ""
+    terms = list(_terms(state, errors, k))
+    if not terms or _alike(terms):
+        return ""
+
+    sentences = "; ".join(term.sentence for term in terms)
+    work = ""
+    if _does_work(errors, state[2:]):
+        work = " The difference does work, as no Coriolis force does."
+    reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
+    difference = f"differ from the model's{reading} by {size:.2g} m/s²"
+    return f"Its accelerations {difference}: {sentences}.{work}"
 
 
-def _size(rates: Array) -> float:
-    return float(np.sqrt(np.mean(rates**2)))
+def _does_work(errors: Array, velocities: Array) -> bool:
+    """Return whether errors of the accelerations do work along the motion."""
+    power = np.mean(np.sum(errors * velocities, axis=0))
+    return bool(abs(power) > _WORK * 2 * _rms(errors) * _rms(velocities))
 
 
-def _differentiated(times: Array, plane: Array, rate: float) -> tuple[Array, Array, float] | None:
-    """Return x, y, vx, vy, and ax, ay of rows with equal steps, differentiated, and the error of the last in m/s².
+def _rms(values: Array) -> float:
+    """Return the root mean square of all values."""
+    return float(np.sqrt(np.mean(values**2)))
 
-    None if rows are too few, or too far apart for the scene's motion or their own, or steps differ. Of rows that are
-    close to each other only some are taken: their rounding would be magnified most.
+
+@dataclass(frozen=True)
+class _MotionOfRows:
+    """The motion that rows show.
+
+    Attributes:
+        state: x, y, vx, vy in m and m/s, shape (4, rows).
+        accelerations: of x and y in m/s², shape (2, rows).
+        error: an estimate of the accelerations' root mean square error in m/s².
+    """
+
+    state: Array
+    accelerations: Array
+    error: float
+
+
+def _differentiated(times: Array, plane: Array, swing_rate: float) -> _MotionOfRows | None:
+    """Return the motion of evenly spaced rows by numerical differentiation.
+
+    None if rows are too few, not evenly spaced, or too far apart for the scene's motion or their
+    own. If rows are close to each other only some are used: the others would amplify the rounding.
     """
     steps = np.diff(times)
-    if len(times) < LEAST or not np.ptp(steps) < 1e-6 * steps[0] or not steps[0] * rate < FARTHEST:
+    if len(times) < _LEAST or not np.ptp(steps) < 1e-6 * steps[0]:
         return None
-    stride = max(1, min(int(USUAL / (steps[0] * rate)), len(times) // LEAST))
-    h, plane = float(steps[0]) * stride, plane[::stride]
-    parts = [
-        np.array([np.convolve(q, stencil[::-1], "valid") for q in plane.T])
-        for stencil in (FIRST, SECOND, COARSE)
-    ]
-    speeds, rates, coarse = parts[0] / h, parts[1] / h**2, parts[2][:, 1:-1] / h**2
-    if h * h * _size(rates) > _size(plane):  # the bob turns back from row to row
+    if not steps[0] * swing_rate < _FARTHEST:
         return None
-    return np.vstack([plane[3:-3].T, speeds]), rates, _size(rates - coarse)
+    stride = max(1, min(int(_USUAL / (steps[0] * swing_rate)), len(times) // _LEAST))
+    h = float(steps[0]) * stride
+    plane = plane[::stride]
+    velocities = _convolved(plane, _FIRST) / h
+    accelerations = _convolved(plane, _SECOND) / h**2
+    coarse = _convolved(plane, _COARSE)[:, 1:-1] / h**2
+    if h * h * _rms(accelerations) > _rms(plane):  # the bob turns back from row to row
+        return None
+    state = np.vstack([plane[3:-3].T, velocities])
+    return _MotionOfRows(state, accelerations, _rms(accelerations - coarse))
+
+
+def _convolved(plane: Array, stencil: Array) -> Array:
+    """Return a stencil's sums over the rows of x and y, shape (2, rows)."""
+    return np.array([np.convolve(column, stencil[::-1], "valid") for column in plane.T])
 
 
 def _model(state: Array, k: Constants) -> Array:
@@ -108,83 +139,121 @@ def _model(state: Array, k: Constants) -> Array:
     return np.asarray(np.array([ax, ay]) * k.length)
 
 
-def _terms(state: Array, off: Array, k: Constants) -> Iterator[tuple[str, str, float, float]]:
-    """Yield equation, term, its coefficient in the rows and in the model: the fewest that leave next to nothing."""
+@dataclass(frozen=True)
+class _Term:
+    """A term of an equation of motion: its coefficient in the rows, and in the model."""
+
+    equation: str
+    name: str
+    value: float
+    right: float
+
+    @property
+    def sentence(self) -> str:
+        """What is reported of it."""
+        name = "the constant term" if self.name == "1" else f"the term with {self.name}"
+        value = f"{self.value:.6g} {_TERMS[self.name]}"
+        right = f"{self.right + 0.0:.6g}"
+        return f"in the equation of {self.equation}, {name} is {value} where the model has {right}"
+
+
+def _terms(state: Array, errors: Array, k: Constants) -> Iterator[_Term]:
+    """Yield the fewest terms that explain the errors of accelerations; none if they are many."""
     basis = np.vstack([np.ones(state.shape[1]), state])
     scale = np.sqrt(np.mean(basis**2, axis=1))
     scale[scale == 0] = 1.0
     basis /= scale[:, None]
-    places = [(i, j) for i in range(2) for j in range(len(TERMS))]
-    chosen: list[tuple[int, int]] = []
-    whole = float(np.sum(off**2))
-    for _ in range(MOST):
-        rest, place = min(
-            (_left(basis, off, [*chosen, place])[0], place)
-            for place in places
-            if place not in chosen
-        )
-        chosen.append(place)
-        if rest < EXPLAINED * whole:
-            break
-    else:
-        return
-    fitted = _left(basis, off, chosen)[1]
-    nudges = NUDGE * np.eye(4)
-    slopes = (_model(nudges, k) - _model(-nudges, k)) / (2 * NUDGE)
+    coefficients = _fewest_coefficients(basis, errors)
+
+    # the model's coefficients, by central differences about the lowest point
+    nudges = _NUDGE * np.eye(4)
+    slopes = (_model(nudges, k) - _model(-nudges, k)) / (2 * _NUDGE)
     model = np.hstack([_model(np.zeros((4, 1)), k), slopes])
-    for i, j in chosen:
+    for (i, j), coefficient in coefficients.items():
         right = float(model[i, j])
-        yield "xy"[i], list(TERMS)[j], right + fitted[i, j] / float(scale[j]), right
+        yield _Term("xy"[i], list(_TERMS)[j], right + coefficient / float(scale[j]), right)
 
 
-def _left(
-    basis: Array, off: Array, places: list[tuple[int, int]]
-) -> tuple[float, dict[tuple[int, int], float]]:
-    """Return the sum of squares that some terms leave, and their coefficients."""
-    rest = 0.0
-    fitted: dict[tuple[int, int], float] = {}
-    for i, accelerations in enumerate(off):
+def _fewest_coefficients(basis: Array, errors: Array) -> dict[tuple[int, int], float]:
+    """Return the coefficients of the fewest terms that explain errors, by equation and term.
+
+    The terms are in the order in which they were chosen, each the one that leaves least. There are
+    none if more than `_MOST` are needed.
+    """
+    candidates = [(i, j) for i in range(2) for j in range(len(_TERMS))]
+    total = float(np.sum(errors**2))
+    chosen: list[tuple[int, int]] = []
+    while len(chosen) < _MOST:
+        fits = {}
+        for place in candidates:
+            if place not in chosen:
+                fits[place] = _fit(basis, errors, [*chosen, place])
+        best = min(fits, key=lambda place: (fits[place].residual, place))
+        chosen.append(best)
+        if fits[best].residual < _EXPLAINED * total:
+            return {place: fits[best].coefficients[place] for place in chosen}
+    return {}
+
+
+@dataclass(frozen=True)
+class _TermFit:
+    """The sum of squares that some terms leave, and their coefficients by equation and term."""
+
+    residual: float
+    coefficients: dict[tuple[int, int], float]
+
+
+def _fit(basis: Array, errors: Array, places: list[tuple[int, int]]) -> _TermFit:
+    """Return the fit of errors by the terms at some places."""
+    residual = 0.0
+    coefficients: dict[tuple[int, int], float] = {}
+    for i, values in enumerate(errors):
         terms = [j for equation, j in places if equation == i]
-        solution = solved(basis[terms].T, accelerations)
-        fitted |= {(i, j): float(value) for j, value in zip(terms, solution, strict=True)}
-        rest += float(np.sum((accelerations - solution @ basis[terms]) ** 2))
-    return rest, fitted
+        solution = solved(basis[terms].T, values)
+        for j, coefficient in zip(terms, solution, strict=True):
+            coefficients[i, j] = float(coefficient)
+        residual += float(np.sum((values - solution @ basis[terms]) ** 2))
+    return _TermFit(residual, coefficients)
 
 
-def _alike(off: list[tuple[str, str, float]]) -> bool:
-    """Return whether x and y are off alike: by a number, such as g or drag, or by the integrator, not by a slip."""
+def _alike(terms: list[_Term]) -> bool:
+    """Return whether x and y have the same error.
+
+    Then a number, such as g or drag, or the integrator is wrong.
+    """
     pairs = ({("x", "x"), ("y", "y")}, {("x", "vx"), ("y", "vy")})
-    if {part[:2] for part in off} not in pairs:
+    if {(term.equation, term.name) for term in terms} not in pairs:
         return False
-    (_, _, a), (_, _, b) = off
-    return abs(a - b) < ALIKE * abs(a)
-
-
-def _sentence(equation: str, term: str, value: float, right: float) -> str:
-    name = "the constant term" if term == "1" else f"the term with {term}"
-    return f"in the equation of {equation}, {name} is {value:.6g} {TERMS[term]} where the model has {right + 0.0:.6g}"
+    first, second = (term.value - term.right for term in terms)
+    return abs(first - second) < _ALIKE * abs(first)
 
 
 def falls(rows: FileRows, right: Program) -> str:
-    """Return in a sentence which coordinate falls from row 0 on to far below the cord; empty if none does."""
-    time, gone = rows.times[1:] - rows.times[0], rows.plane[1:] - rows.plane[0]
-    for name, way in zip("xy", gone.T, strict=True):
-        pulls = np.abs(2 * way / time**2) / right.g
-        far = float(abs(way[-1:]).sum())
-        if ((pulls > FREELY[0]) & (pulls < FREELY[1])).all() and far > GROWN * right.length:
-            fell = f"Its {name} falls by {far:.3g} m in {time[-1]:.3g} s, as a body does that no cord holds"
-            return f"{fell}: {name} is its vertical, and its cord pulls too little."
+    """Return a sentence on the coordinate that falls far below the cord; empty if none does."""
+    time = rows.times[1:] - rows.times[0]
+    displacements = rows.plane[1:] - rows.plane[0]
+    for name, displacement in zip("xy", displacements.T, strict=True):
+        pulls = np.abs(2 * displacement / time**2) / right.g
+        distance = float(abs(displacement[-1:]).sum())
+        free = ((pulls > _FREELY[0]) & (pulls < _FREELY[1])).all()
+        if free and distance > _GROWN * right.length:
+            fell = f"Its {name} falls by {distance:.3g} m in {time[-1]:.3g} s"
+            return (
+                f"{fell}, as a body does that no cord holds: "
+                f"{name} is its vertical, and its cord pulls too little."
+            )
     return ""
 
 
 def growth(rows: FileRows) -> str:
-    """Return in a sentence how fast a motion grows; empty if it does not, part by part of the rows."""
-    parts = np.array_split(np.arange(len(rows.times)), PARTS)
-    if len(rows.times) < 2 * PARTS:
+    """Return a sentence on how fast a motion grows throughout the rows; empty if it does not."""
+    if len(rows.times) < 2 * _PARTS:
         return ""
+    parts = np.array_split(np.arange(len(rows.times)), _PARTS)
     reach = np.array([float(np.hypot(*rows.plane[part].T).max()) for part in parts])
-    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > GROWN * reach[0]:
+    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > _GROWN * reach[0]:
         return ""
     between = float(rows.times[parts[-1]].mean() - rows.times[parts[0]].mean())
     fold = between / math.log(reach[-1] / reach[0])
-    return f"Its motion grows by a factor of e in {fold:.2g} s: a force does work, or the cord does not hold."
+    grows = f"Its motion grows by a factor of e in {fold:.2g} s"
+    return f"{grows}: a force does work, or the cord does not hold."

@@ -1,8 +1,9 @@
-"""Fixed steps on the sphere, run as a program would: of a length that divides the spacing of the rows.
+"""Fixed-step methods on the sphere, run as programs run them: in whole steps from row to row.
 
-What the leading error of a step does to a small swing is known; what a step does to a wide one, leaving the sphere on
-its way, is not. So the equations of a program are stepped in the same way, and what that does to the rows is taken
-from them before they are read.
+The leading error of a step describes what a method does to a small swing, but not to a wide
+one, which leaves the sphere on its way. So the equations of a program are stepped with the same
+method, and the difference from an exact integration is subtracted from the rows before they are
+read.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .claims import explanation_of
+from .claims import Hypothesis, explanation_of
 from .families import fit_pendulum
 from .fitted import readings_of
 from .loops import LinearSteps, likely_loops
@@ -33,60 +34,74 @@ from .programs import Program, SphericalPendulum
 from .readings import CauseReading
 from .thresholds import NEEDED
 
-TITLES = {method.id: method.title for method in METHODS}
-TITLES["heun"] = TITLES["rk2"]
-FINEST = {  # ωh: the shortest step that is tried
-    "semi_implicit_euler": 0.004, "semi_implicit_euler_drift": 0.004, "leapfrog": 0.004, "explicit_euler": 0.001,
-    "rk2": 0.004, "heun": 0.004, "rk4": 0.02,
-}  # fmt: skip
-# places of the stages after the first, weights
-RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+_TITLES = {method.id: method.title for method in METHODS}
+_TITLES["heun"] = _TITLES["rk2"]
+# ωh: the shortest step that is tried
+_FINEST = {
+    "semi_implicit_euler": 0.004,
+    "semi_implicit_euler_drift": 0.004,
+    "leapfrog": 0.004,
+    "explicit_euler": 0.001,
+    "rk2": 0.004,
+    "heun": 0.004,
+    "rk4": 0.02,
+}
+# places of the stages after the first, weights of all stages
+_RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "explicit_euler": ((), (1.0,)),
     "rk2": ((1 / 2,), (0.0, 1.0)),
     "heun": ((1.0,), (1 / 2, 1 / 2)),
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
-LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
-FEWEST = 30  # rows that tell a motion: to have as many, twice as many steps are run
-TRIED = 24  # numbers of steps that are run at a time
-LEAP, WORTH = 4, 4000  # steps that are compiled as one, and the steps from which that pays
-SEARCHED = 8_000  # steps that are run at most where nothing tells how many there are
-SWING = 1.5  # periods at the beginning that tell the step
-LIKELY = 3  # steps that are tried on all rows
-PLAIN = 0.3  # of what no step at all leaves of the first swing
-READINGS = 2  # of that motion
-STEP_LEFT = 1e-3  # of what the steps do that may be left
-ALIKE = 10.0  # times what the likeliest leaves: others that are tried
-NEWTON = 2  # times that they are moved before any are taken
-# of theta, beside which a step is looked for: turn, pull, drag, place of the release
-UNSURE = (2, 3, 4, 5, 6, 7, 8)
-State = list[Any]
+LONGEST = 15_000  # steps that are run; only the rows up to there are read
+_FEWEST = 30  # rows that determine a motion; up to twice as many steps are run to reach them
+_TRIED = 24  # numbers of steps that are run at a time
+_LEAP = 4  # steps that are compiled as one
+_WORTH = 4000  # steps from which compiling several as one pays
+_SEARCHED = 8_000  # steps that are run at most while their number is unknown
+_SWING = 1.5  # periods at the beginning from which the step is estimated
+_LIKELY = 3  # steps that are tried on all rows
+# the largest residual of a likely step in the first swing, over that of an exact integration
+_PLAIN = 0.3
+_READINGS = 2  # how often the rows are read, the effect of the steps computed again in between
+_STEP_LEFT = 1e-3  # of the effect of the steps: largest residual of steps that are right
+_ALIKE = 10.0  # ratio of residuals: beyond that of the likeliest steps, others are not tried
+_NEWTON = 2  # Gauss-Newton steps before any fixed step is tried
+# indices of theta that are fitted together with a step: turn, pull, drag, place of the release
+_UNSURE = [2, 3, 4, 5, 6, 7, 8]
+_State = list[Any]
 
 
 @dataclass(frozen=True)
 class Steps(SphericalPendulum):
-    """A pendulum that a method moves, from row to row in a whole number of steps.
+    """A pendulum that a fixed-step method moves, with a whole number of steps from row to row.
 
     Attributes:
-        method: a word of `FINEST`.
-        every: number of steps from row to row.
-        spacing: of the rows in s.
-        near: the theta with which they make the first swing, or none.
+        method: a word of `_FINEST`.
+        steps_per_row: number of steps from row to row.
+        spacing_s: time from row to row.
+        guess: the theta with which it meets the first swing; empty if unknown.
     """
 
     method: str = ""
-    every: int = 1
-    spacing: float = 0.0
-    near: tuple[float, ...] = ()
+    steps_per_row: int = 1
+    spacing_s: float = 0.0
+    guess: tuple[float, ...] = ()
     kind: str = "sphere"
 
     @property
+    def step_s(self) -> float:
+        """Its step."""
+        return self.spacing_s / self.steps_per_row
+
+    @property
     def title(self) -> tuple[str, str]:
-        """Its word, and what people call it."""
-        return "rk2" if self.method == "heun" else self.method, TITLES[self.method]
+        """The word of its method, and the name that people use."""
+        word = "rk2" if self.method == "heun" else self.method
+        return word, _TITLES[self.method]
 
     def exact(self, theta: Array, times: Array) -> Array:
-        """Return x and y in m as an exact integration has them, shape (times, 2)."""
+        """Return x and y in m of an exact integration, shape (times, 2)."""
         return super().rows(theta, times, 2)
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
@@ -96,247 +111,405 @@ class Steps(SphericalPendulum):
     def slopes(
         self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array
     ) -> Array:
-        """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * 2, 14)."""
-        moved = self._at(times, np.column_stack([theta, theta[:, None] + np.diag(nudges * scales)]))
-        return np.asarray((moved[:, :, 1:] - moved[:, :, :1]) / nudges).reshape(-1, len(theta))
+        """Return d rows / d theta times `scales`, shape (times * 2, 14).
+
+        They are differences; each number of theta is moved by `nudges` scales.
+        """
+        nudged = theta[:, None] + np.diag(nudges * scales)
+        rows = self._at(times, np.column_stack([theta, nudged]))
+        differences = rows[:, :, 1:] - rows[:, :, :1]
+        return np.asarray(differences / nudges).reshape(-1, len(theta))
 
     def _at(self, times: Array, thetas: Array) -> Array:
-        at = np.round(times / self.spacing).astype(int)
-        return np.asarray(
-            self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at]
-        )
+        """Return x and y in m at some times, shape (times, 2, columns of thetas)."""
+        indices = np.round(times / self.spacing_s).astype(int)
+        steps_per_row = np.full(thetas.shape[1], self.steps_per_row)
+        return np.asarray(self.all_rows(thetas, steps_per_row, int(indices[-1]))[indices])
 
-    def all_rows(self, thetas: Array, every: npt.NDArray[np.int64], count: int) -> Array:
-        """Return x and y of row 0, 1, … in m, shape (rows, 2, columns of theta), each in steps of its own."""
+    def all_rows(self, thetas: Array, steps_per_row: npt.NDArray[np.int64], count: int) -> Array:
+        """Return x and y in m of rows 0 to `count`, shape (count + 1, 2, columns of thetas).
+
+        Args:
+            thetas: one in each column.
+            steps_per_row: number of steps from row to row, for each column.
+            count: index of the last row.
+        """
+        # one function, because all steps are a loop over arrays that are prepared before it
         constants = [self.constants(theta) for theta in thetas.T]
-        numbers = np.array(
+        parameters = np.array(
             [[0.0, *k.pull, *k.turn, *k.centrifugal, k.drag] for k in constants]
         ).T.copy()
-        numbers[0] = self.spacing / every
+        parameters[0] = self.spacing_s / steps_per_row
         state = np.column_stack([self.start(theta) for theta in thetas.T])
         rows = np.full((count + 1, *state[:2].shape), np.nan)
         rows[0] = state[:2]
-        # by row and column, the number of steps that reach it; those that the same number reaches, together
-        ends, done = np.arange(1, count + 1)[:, None] * every, 0
-        numbers_of_steps, first = np.unique(np.sort(ends, axis=None), return_index=True)
-        reached = np.split(np.argsort(ends, axis=None), first[1:])
-        step, leap = _steps(self.method, 1), LEAP if numbers_of_steps[-1] >= WORTH else 1
-        leaping = _steps(self.method, leap)
-        for steps, ended in zip(numbers_of_steps.tolist(), reached, strict=True):
-            leaps, more = divmod(steps - done, leap)
-            for taken in [leaping] * leaps + [step] * more:
-                state = taken(state, pars=numbers)
-            row, column = np.divmod(ended, len(every))
-            rows[row + 1, :, column], done = state[:2, column].T, steps
+
+        # the number of steps after which each column reaches each row, sorted; what is reached
+        # after the same number is stored together
+        steps_to_row = np.arange(1, count + 1)[:, None] * steps_per_row
+        step_counts, first = np.unique(np.sort(steps_to_row, axis=None), return_index=True)
+        reached = np.split(np.argsort(steps_to_row, axis=None), first[1:])
+
+        leap = _LEAP if step_counts[-1] >= _WORTH else 1
+        one_step = _compiled_steps(self.method, 1)
+        leap_of_steps = _compiled_steps(self.method, leap)
+        done = 0
+        for step_count, places in zip(step_counts.tolist(), reached, strict=True):
+            leaps, single_steps = divmod(step_count - done, leap)
+            for _ in range(leaps):
+                state = leap_of_steps(state, pars=parameters)
+            for _ in range(single_steps):
+                state = one_step(state, pars=parameters)
+            done = step_count
+            row, column = np.divmod(places, len(steps_per_row))
+            rows[row + 1, :, column] = state[:2, column].T
         return np.asarray(rows * thetas[11])
 
 
 def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None:
-    """Return what is known of rows that such a method made on the sphere; None if none did.
+    """Return the explanation of rows that a fixed-step method made; None if none did.
 
-    The numbers of the motion are fitted in these steps; what the steps do to it is taken from the rows.
+    The numbers of the motion are fitted with these steps; the effect of the steps is subtracted
+    from the rows before they are read.
 
     Args:
         case: the rows.
-        reading: of the rows, its integrator's step known roughly; or None.
+        reading: of the rows, with the integrator's step known roughly; or None.
     """
     rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
-    hung = case.right.changed(length=case.rows.cord or case.right.length)
     for loop in likely_loops(flat):
-        explanation = _of_steps(flat, loop)
+        explanation = _explanation_with(flat, loop)
         if explanation is not None:
             return explanation
+
+    right = case.right.changed(length=case.rows.cord or case.right.length)
+    program = None if reading is None else reading.program
     explanations = []
-    for steps in likely_steps(
-        replace(flat, right=hung), None if reading is None else reading.program
-    ):
-        within = rows.times <= steps.spacing / steps.every * max(
-            LONGEST, min(FEWEST * steps.every, 2 * LONGEST)
-        )
-        explanation = (
-            _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
-        )
-        if explanation is not None:
-            explanations.append(explanation)
-            if all(cause.stage != AS_IF for cause in explanation.causes):
-                break
+    for steps in likely_steps(replace(flat, right=right), program):
+        longest = max(LONGEST, min(_FEWEST * steps.steps_per_row, 2 * LONGEST))
+        count = int((rows.times <= steps.step_s * longest).sum())
+        if count < _FEWEST:
+            continue
+        explanation = _explanation_with(flat.part(count), steps)
+        if explanation is None:
+            continue
+        explanations.append(explanation)
+        if all(cause.stage != AS_IF for cause in explanation.causes):
+            break
     return min(explanations, key=lambda explanation: explanation.score, default=None)
 
 
-def _of_steps(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
-    """Return what is known of rows that some steps made; None if others did."""
+@dataclass(frozen=True)
+class _SteppedMotion:
+    """The motion that some steps make of a theta.
+
+    Attributes:
+        steps: that make it.
+        rows: x and y in m.
+        effect: the rows less those of an exact integration, in m.
+    """
+
+    steps: Steps | LinearSteps
+    rows: Array
+    effect: Array
+
+    @classmethod
+    def of(cls, steps: Steps | LinearSteps, theta: Array, times: Array) -> _SteppedMotion:
+        """Return the motion at some times."""
+        rows = steps.rows(theta, times, 2)
+        return cls(steps, rows, rows - steps.exact(theta, times))
+
+    def taken_from(self, case: FileCase) -> FileCase:
+        """Return a case with the effect of the steps subtracted from its rows."""
+        rows = replace(case.rows, positions=case.rows.positions - self.effect)
+        return replace(case, rows=rows)
+
+
+def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
+    """Return the explanation of rows that some steps made; None if others did."""
     rows = case.rows
-    fit = fit_pendulum(case, steps, [np.array(steps.near)])
+    fit = fit_pendulum(case, steps, [np.array(steps.guess)])
     if fit is None:
         return None
-    theta, best = fit.theta, None
+
+    motion = _SteppedMotion.of(steps, fit.theta, rows.times)
+    best: Hypothesis | None = None
     readings: list[CauseReading] = []
-    moved = steps.rows(theta, rows.times, 2)
-    for _ in range(READINGS):
-        effect, left = moved - steps.exact(theta, rows.times), rms(rows.positions - moved)
-        if not left <= max(case.floor, STEP_LEFT * rms(effect)):
+    for _ in range(_READINGS):
+        residual_m = rms(rows.positions - motion.rows)
+        if not residual_m <= max(case.floor, _STEP_LEFT * rms(motion.effect)):
             return None
-        if best is not None and left <= case.floor:
+        if best is not None and residual_m <= case.floor:
             break
-        seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-        readings = readings_of(seen, stepped=True)
-        _, best = explanation_of(seen, readings)
+        exact_case = motion.taken_from(case)
+        readings = readings_of(exact_case, stepped=True)
+        _, best = explanation_of(exact_case, readings)
         if best is None or best.reading.program.kind != steps.kind:
             return None
         pendulum, theta = case.pendulum_of(best.reading.program)
-        steps = replace(steps, **vars(pendulum))
-        moved = steps.rows(theta, rows.times, 2)
-    effect = moved - steps.exact(theta, rows.times)
-    residuals = rows.positions - moved
+        motion = _SteppedMotion.of(replace(motion.steps, **vars(pendulum)), theta, rows.times)
+
+    residuals = rows.positions - motion.rows
     if best is None or not largest(residuals) <= case.enough:
         return None
-    # the steps of a linear model are exact: what they leave is rounding, or they are others; and numbers that nobody
-    # typed take up what others leave
+    # the steps of a linear model are exact: a residual beyond rounding refutes them; and numbers
+    # that nobody typed absorb the residuals of wrong steps
     most = 1.0 if best.untyped else NEEDED
     if steps.kind == "linear" and not rms(residuals) <= most * case.resolution:
         return None
-    seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
-    explanation, _ = explanation_of(seen, [replace(best.reading, rest=rms(residuals)), *readings])
-    causes = (*explanation.causes, step_cause(steps, effect))
+    readings = [replace(best.reading, rest=rms(residuals)), *readings]
+    explanation, _ = explanation_of(motion.taken_from(case), readings)
+    causes = (*explanation.causes, step_cause(motion.steps, motion.effect))
     tested = case.tested(causes, residuals, len(causes))
     return tested if tested.causes else None
 
 
 def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:
-    """Return the cause that a program takes some steps, which have an effect on its rows."""
-    step = steps.spacing / steps.every
+    """Return the cause that a program takes some steps; they move its rows by `effect` in m."""
     word, title = steps.title
-    text = f"integrates with {title} at a step of {step:.3g} s"
-    return Deviation(f"integrator_{word}", text, largest(effect), "integrator", step, step)
+    step_s = steps.step_s
+    text = f"integrates with {title} at a step of {step_s:.3g} s"
+    return Deviation(f"integrator_{word}", text, largest(effect), "integrator", step_s, step_s)
 
 
-def likely_steps(case: FileCase, near: Program | None) -> list[Steps]:
-    """Return methods and steps that the first swing looks like, the likeliest first; none for rows not evenly spaced.
+@dataclass(frozen=True)
+class _Candidate:
+    """Steps that may have made the first swing, and the norm in m of what they leave of it."""
 
-    The rows have x and y alone, the first of them evenly spaced from the release on. Where they are so far apart that
-    it takes long to try all, the shortest steps are not tried, or those near a program's step alone.
+    residual_m: float
+    steps: Steps
+
+
+def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
+    """Return the methods and steps that fit the first swing, the likeliest first.
+
+    There are none for rows that are not evenly spaced.
+
+    Args:
+        case: the rows, with x and y alone, the first of them evenly spaced from the release on.
+        program: its step is tried first. If rows are too far apart for all steps to be tried,
+            steps near its own are tried, or the shortest steps are left out.
     """
-    rows, frequency = case.rows, case.frequency
-    if len(rows.times) < 8 or rows.times[0] != 0 or not frequency:
+    swing = _FirstSwing.of(case)
+    if swing is None:
         return []
-    spacing = float(rows.times[1])
-    count = max(10, math.ceil(SWING * 2 * math.pi / frequency / spacing))
-    even = (
-        np.abs(rows.times / spacing - np.round(rows.times / spacing)).max()
-        < 1e-6 * rows.times[-1] / spacing
-    )
-    if not even or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
-        return []
-    swing = case.part(count + 1)
-    pendulum, right = case.pendulum_of(case.right)
-    theta = right
-    for _ in range(NEWTON):
-        theta, slopes = _nearer(swing, pendulum, theta)
-    thetas = np.column_stack([right, theta])
-    plain = float(np.linalg.norm(swing.rows.positions - pendulum.rows(theta, swing.rows.times, 2)))
-    likely: list[tuple[float, Steps]] = []
-    for method in FINEST:
-        steps = Steps(**vars(pendulum), method=method, spacing=spacing)
-        finest = int(spacing * frequency / FINEST[method])
-        low, high = 1, min(finest, SEARCHED // count)
-        known = near and near.step and near.method and near.method.id == method
-        roughly = round(spacing / near.step) if near and known else 0
-        if 0 < roughly <= finest:
-            likely.append((0.0, replace(steps, every=roughly, near=tuple(theta))))
-            if roughly > high:
-                low, high = roughly - TRIED // 4, min(finest, roughly + TRIED // 4)
-        likely += _apart(swing, steps, thetas, slopes, low, high)
-    likely.sort(key=lambda pair: pair[0])
-    least = next((size for size, _ in likely if size), 0.0)
-    return [steps for size, steps in likely[:LIKELY] if size < min(PLAIN * plain, ALIKE * least)]
+    candidates: list[_Candidate] = []
+    for method in _FINEST:
+        candidates += _candidates(swing, method, program)
+    candidates.sort(key=lambda candidate: candidate.residual_m)
+    sizes = [candidate.residual_m for candidate in candidates]
+    least_m = next((size for size in sizes if size), 0.0)
+    most_m = min(_PLAIN * swing.exact_residual_m, _ALIKE * least_m)
+    likeliest = candidates[:_LIKELY]
+    return [candidate.steps for candidate in likeliest if candidate.residual_m < most_m]
 
 
-def _nearer(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tuple[Array, Array]:
-    """Return theta, its unsure numbers moved to where the pendulum leaves less, and the slopes by these in scales."""
-    rows, unsure = swing.rows, list(UNSURE)
-    slopes = pendulum.slopes(theta, rows.times, 2, swing.scales, np.full(len(theta), 1e-6))[
-        :, unsure
-    ]
-    left = (rows.positions - pendulum.rows(theta, rows.times, 2)).ravel()
-    if not (np.isfinite(slopes).all() and np.isfinite(left).all()):
-        return theta, np.zeros((len(left), 0))
-    nearer = theta.copy()
-    nearer[unsure] += swing.scales[unsure] * best_change(slopes, left)
-    return nearer, slopes
+@dataclass(frozen=True)
+class _FirstSwing:
+    """The first rows, evenly spaced from the release on, and the exact integration that fits them.
 
-
-def _apart(
-    swing: FileCase, steps: Steps, thetas: Array, slopes: Array, low: int, high: int
-) -> list[tuple[float, Steps]]:
-    """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best.
-
-    The theta is the one of some that leaves least, moved nearer with every round.
+    Attributes:
+        case: the first rows.
+        pendulum: runs theta.
+        right: theta of a right program.
+        theta: that fits the rows best without fixed steps.
+        slopes: d rows / d theta by its unsure numbers, in scales.
     """
-    rows, settled = swing.rows, False
+
+    case: FileCase
+    pendulum: SphericalPendulum
+    right: Array
+    theta: Array
+    slopes: Array
+
+    @classmethod
+    def of(cls, case: FileCase) -> _FirstSwing | None:
+        """Return the first swing of a case; None if its rows are not evenly spaced."""
+        first = _first_rows(case)
+        if first is None:
+            return None
+        pendulum, right = case.pendulum_of(case.right)
+        theta = right
+        for _ in range(_NEWTON):
+            theta, slopes = _improved(first, pendulum, theta)
+        return cls(first, pendulum, right, theta, slopes)
+
+    @property
+    def spacing_s(self) -> float:
+        """Time from row to row."""
+        return float(self.case.rows.times[1])
+
+    @property
+    def exact_residual_m(self) -> float:
+        """Norm of what theta leaves without fixed steps."""
+        rows = self.case.rows
+        return float(np.linalg.norm(rows.positions - self.pendulum.rows(self.theta, rows.times, 2)))
+
+
+def _first_rows(case: FileCase) -> FileCase | None:
+    """Return the rows of the first swing; None if they are not even from the release on."""
+    times = case.rows.times
+    if len(times) < 8 or times[0] != 0 or not case.frequency:
+        return None
+    spacing_s = float(times[1])
+    count = max(10, math.ceil(_SWING * 2 * math.pi / case.frequency / spacing_s))
+    spacings = times / spacing_s
+    if not np.abs(spacings - np.round(spacings)).max() < 1e-6 * times[-1] / spacing_s:
+        return None
+    if len(times) <= count or abs(spacings[count] - count) > 1e-6:
+        return None
+    return case.part(count + 1)
+
+
+def _candidates(swing: _FirstSwing, method: str, program: Program | None) -> list[_Candidate]:
+    """Return the steps of a method that may have made the first swing.
+
+    They are the number of steps that leaves least, with its neighbours, and a program's own number.
+    """
+    steps = Steps(**vars(swing.pendulum), method=method, spacing_s=swing.spacing_s)
+    finest = int(swing.spacing_s * swing.case.frequency / _FINEST[method])
+    low = 1
+    high = min(finest, _SEARCHED // (len(swing.case.rows.times) - 1))
+    candidates = []
+    expected = _steps_per_row(program, method, swing.spacing_s)
+    if 0 < expected <= finest:
+        guess = tuple(swing.theta)
+        expected_steps = replace(steps, steps_per_row=expected, guess=guess)
+        candidates.append(_Candidate(0.0, expected_steps))
+        if expected > high:
+            low = expected - _TRIED // 4
+            high = min(finest, expected + _TRIED // 4)
+    return candidates + _closest(swing, steps, low, high)
+
+
+def _steps_per_row(program: Program | None, method: str, spacing_s: float) -> int:
+    """Return the steps from row to row of a program with a method; 0 if it has another, or none."""
+    if program is None or program.method is None or not program.step:
+        return 0
+    return round(spacing_s / program.step) if program.method.id == method else 0
+
+
+def _improved(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tuple[Array, Array]:
+    """Return theta after a Gauss-Newton step of its unsure numbers, and the slopes by these."""
+    times = swing.rows.times
+    all_slopes = pendulum.slopes(theta, times, 2, swing.scales, np.full(len(theta), 1e-6))
+    slopes = all_slopes[:, _UNSURE]
+    residuals = (swing.rows.positions - pendulum.rows(theta, times, 2)).ravel()
+    if not (np.isfinite(slopes).all() and np.isfinite(residuals).all()):
+        return theta, np.zeros((len(residuals), 0))
+    improved = theta.copy()
+    improved[_UNSURE] += swing.scales[_UNSURE] * best_change(slopes, residuals)
+    return improved, slopes
+
+
+def _closest(swing: _FirstSwing, steps: Steps, low: int, high: int) -> list[_Candidate]:
+    """Return the number of steps from row to row that leaves least, between its neighbours.
+
+    The numbers tried lie from `low` to `high`, then ever closer around the best. All are tried
+    with every theta; the one that leaves least is improved after each round.
+    """
+    thetas = np.column_stack([swing.right, swing.theta])
+    slopes = swing.slopes
+    settled = False
     while low <= high:
-        shares = np.linalg.qr(slopes)[0]
-        every = np.unique(np.geomspace(low, high, TRIED).round().astype(np.int64))
-        together = thetas.repeat(len(every), axis=1), np.tile(every, thetas.shape[1])
-        made = steps.all_rows(*together, len(rows.times) - 1)
-        left = (rows.positions[:, :, None] - made).reshape(-1, made.shape[2])
-        sizes = np.linalg.norm(left - shares @ (shares.T @ left), axis=0)
-        which, best = divmod(
-            int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf))), len(every)
-        )
-        theta, sizes = thetas[:, which], sizes.reshape(-1, len(every))[which]
+        steps_per_row = np.unique(np.geomspace(low, high, _TRIED).round().astype(np.int64))
+        norms_m = _residual_norms(swing.case, steps, thetas, slopes, steps_per_row)
+        smallest = np.argmin(np.where(np.isfinite(norms_m), norms_m, np.inf))
+        which, best = divmod(int(smallest), len(steps_per_row))
+        theta = thetas[:, which]
+        norms_m = norms_m[which]
+
         near = slice(max(best - 1, 0), best + 2)
-        if settled or not np.isfinite(sizes[best]):
-            closest = zip(sizes[near].tolist(), every[near].tolist(), strict=True)
+        if settled or not np.isfinite(norms_m[best]):
+            counts = steps_per_row[near].tolist()
+            guess = tuple(theta)
             return [
-                (size, replace(steps, every=count, near=tuple(theta))) for size, count in closest
+                _Candidate(norm_m, replace(steps, steps_per_row=count, guess=guess))
+                for norm_m, count in zip(norms_m[near].tolist(), counts, strict=True)
             ]
-        theta, slopes = _nearer(swing, replace(steps, every=int(every[best])), theta)
-        thetas, settled = theta[:, None], high - low < len(every)
-        low, high = (low, high) if settled else (int(every[near][0]), int(every[near][-1]))
+        best_steps = replace(steps, steps_per_row=int(steps_per_row[best]))
+        theta, slopes = _improved(swing.case, best_steps, theta)
+        thetas = theta[:, None]
+        settled = high - low < len(steps_per_row)
+        if not settled:
+            low = int(steps_per_row[near][0])
+            high = int(steps_per_row[near][-1])
     return []
 
 
-@cache
-def _steps(method: str, count: int) -> Any:
-    """Return steps of a method as machine code: of a state over l, with h, pull, turn, centrifugal, drag as `pars`."""
+def _residual_norms(
+    swing: FileCase,
+    steps: Steps,
+    thetas: Array,
+    slopes: Array,
+    steps_per_row: npt.NDArray[np.int64],
+) -> Array:
+    """Return the norms in m of the residuals, shape (columns of thetas, numbers of steps).
 
-    def change(state: State, numbers: State) -> State:
-        pull, turn, centrifugal = tuple(numbers[1:4]), tuple(numbers[4:7]), tuple(numbers[7:11])
-        k = Constants(pull=pull, turn=turn, centrifugal=centrifugal, drag=numbers[11])
+    What the slopes can take up is not counted.
+    """
+    count = len(steps_per_row)
+    repeated = thetas.repeat(count, axis=1)
+    rows = steps.all_rows(
+        repeated, np.tile(steps_per_row, thetas.shape[1]), len(swing.rows.times) - 1
+    )
+    residuals = (swing.rows.positions[:, :, None] - rows).reshape(-1, rows.shape[2])
+    basis = np.linalg.qr(slopes)[0]
+    norms = np.linalg.norm(residuals - basis @ (basis.T @ residuals), axis=0)
+    return np.asarray(norms.reshape(-1, count))
+
+
+@cache
+def _compiled_steps(method: str, count: int) -> Any:
+    """Return `count` steps of a method as machine code.
+
+    The state is over l; the parameters are h, pull, turn, centrifugal force's gradient, drag.
+    """
+
+    def change(state: _State, parameters: _State) -> _State:
+        k = Constants(
+            pull=tuple(parameters[1:4]),
+            turn=tuple(parameters[4:7]),
+            centrifugal=tuple(parameters[7:11]),
+            drag=parameters[11],
+        )
         for _ in range(count):
-            state = _taken(method, state, numbers[0], k)
+            state = _stepped(method, state, parameters[0], k)
         return state
 
     return compiled(("x", "y", "z", "vx", "vy", "vz"), 12, change)
 
 
-def _taken(method: str, state: State, h: Any, k: Constants) -> State:
+def _stepped(method: str, state: _State, h: Any, k: Constants) -> _State:
     """Return position and velocity after one step."""
 
-    def rates(state: State) -> State:
+    def rates(state: _State) -> _State:
         return [*state[3:], *acceleration(tuple(state[:3]), tuple(state[3:]), k)]
 
-    def kicked(state: State, h: Any) -> State:
-        return [*state[:3], *_along(state[3:], h, rates(state)[3:])]
+    def kicked(state: _State, h: Any) -> _State:
+        return [*state[:3], *_moved(state[3:], h, rates(state)[3:])]
 
-    def drifted(state: State) -> State:
-        return [*_along(state[:3], h, state[3:]), *state[3:]]
+    def drifted(state: _State, h: Any) -> _State:
+        return [*_moved(state[:3], h, state[3:]), *state[3:]]
 
     if method == "semi_implicit_euler":
-        return drifted(kicked(state, h))
+        return drifted(kicked(state, h), h)
     if method == "semi_implicit_euler_drift":
-        return kicked(drifted(state), h)
+        return kicked(drifted(state, h), h)
     if method == "leapfrog":
-        return kicked(drifted(kicked(state, h / 2)), h / 2)
-    places, weights = RUNGE_KUTTA[method]
+        return kicked(drifted(kicked(state, h / 2), h), h / 2)
+
+    places, weights = _RUNGE_KUTTA[method]
     stages = [rates(state)]
     for place in places:
-        stages.append(rates(_along(state, place * h, stages[-1])))
+        stages.append(rates(_moved(state, place * h, stages[-1])))
     for weight, stage in zip(weights, stages, strict=True):
-        state = _along(state, weight * h, stage) if weight else state
+        if weight:
+            state = _moved(state, weight * h, stage)
     return state
 
 
-def _along(state: Sequence[Any], h: Any, rates: Sequence[Any]) -> State:
-    return [value + h * rate for value, rate in zip(state, rates, strict=True)]
+def _moved(values: Sequence[Any], h: Any, rates: Sequence[Any]) -> _State:
+    """Return values + h * rates."""
+    return [value + h * rate for value, rate in zip(values, rates, strict=True)]

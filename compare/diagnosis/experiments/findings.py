@@ -1,4 +1,4 @@
-"""Experiments with a program that is run again: what they change, for which its command is fit, and what they found."""
+"""Experiments with a program that is run again: changes, which a command allows, and findings."""
 
 from __future__ import annotations
 
@@ -16,13 +16,22 @@ from reference.numbers.precision import DOUBLE
 
 from ...candidates.external import SETTING, placeholders
 
-PUSH = 0.2  # of the rate of the swing: by this the release is pushed, round the vertical
-SWING = ("x", "y", "vx", "vy", "angle", "angle_rate", "azimuth_rate")
-ADVICE = (
-    "Add {rotation_rate}, {latitude}, {gravity}, {length}, {x0} {y0}, {vx0} {vy0}, {t_end} or {setting}, "
-    "and have the program use them."
+_PUSH = 0.2  # of the rate of the swing: the rate round the vertical that is added to the release
+# fields of a scene that make its swing wide
+_SWING = (
+    "release.x",
+    "release.y",
+    "release.vx",
+    "release.vy",
+    "release.angle",
+    "release.angle_rate",
+    "release.azimuth_rate",
 )
-Values = Callable[[Scene], dict[str, str]]
+_ADVICE = (
+    "Add {rotation_rate}, {latitude}, {gravity}, {length}, {x0} {y0}, {vx0} {vy0}, {t_end} or "
+    "{setting}, and have the program use them."
+)
+_Values = Callable[[Scene], dict[str, str]]
 
 
 @dataclass(frozen=True)
@@ -32,14 +41,15 @@ class Experiment:
     Attributes:
         id: a stable word, and the name of the file that is kept.
         title: what is changed.
-        values: the fields of the scene with their other values.
-        where: where the mistake is, if the error is gone with it; "" if that would not show it.
-        finer: by which {setting} is divided.
+        values: returns the fields of a scene with their changed values.
+        where: where the mistake is, if the error vanishes with the change; "" if that shows
+            nothing.
+        finer: number by which {setting} is divided.
     """
 
     id: str
     title: str
-    values: Values
+    values: _Values
     where: str = ""
     finer: int = 1
 
@@ -48,48 +58,62 @@ class Experiment:
         return scene.with_values(f"{field}={value}" for field, value in self.values(scene).items())
 
 
-def _times(factor: str, *fields: str) -> Values:
+def _times(factor: str, *fields: str) -> _Values:
+    """Return a change that multiplies fields of a scene by a factor."""
+
     def values(scene: Scene) -> dict[str, str]:
-        texts = {field: attrgetter(field)(scene) for field in fields}
-        return {
-            field: str(Decimal(text) * Decimal(factor))
-            for field, text in texts.items()
-            if text is not None
-        }
+        changed = {}
+        for field in fields:
+            text = attrgetter(field)(scene)
+            if text is not None:
+                changed[field] = str(Decimal(text) * Decimal(factor))
+        return changed
 
     return values
 
 
 def _pole(scene: Scene) -> dict[str, str]:
+    """Return the latitude of the nearer pole."""
     return {"site.latitude": "-90" if scene.exact.latitude < 0 else "90"}
 
 
 def _pushed(scene: Scene) -> dict[str, str]:
-    release, start = scene.release, Start.of(scene.exact, DOUBLE.prec)
-    rate = PUSH * start.fastest_rate
+    """Return the velocity of the release, pushed round the vertical."""
+    release = scene.release
+    start = Start.of(scene.exact, DOUBLE.prec)
+    rate = _PUSH * start.fastest_rate
     if release.angle is not None:
         turn = Decimal(release.azimuth_rate or "0") + Decimal(f"{math.degrees(rate):.3g}")
         return {"release.azimuth_rate": str(turn)}
     x, y, _ = (float(value) for value in start.position)
-    speed = Decimal(f"{rate * (math.hypot(x, y) or 0.05 * float(scene.exact.length)):.3g}")
-    vx, vy = Decimal(release.vx or "0") + speed, Decimal(release.vy or "0") - speed
+    distance = math.hypot(x, y) or 0.05 * float(scene.exact.length)
+    speed = Decimal(f"{rate * distance:.3g}")
+    vx = Decimal(release.vx or "0") + speed
+    vy = Decimal(release.vy or "0") - speed
     return {"release.vx": str(vx), "release.vy": str(vy)}
 
 
-EXPERIMENTS = (
+_EXPERIMENTS = (
     Experiment("half_step", "half the step", lambda _: {}, finer=2),
     Experiment("quarter_g", "a quarter of g", _times("0.25", "site.gravity")),
-    Experiment("no_rotation", "no rotation", lambda _: {"site.rotation_rate": "0"}, "in what the rotation does"),
     Experiment(
-        "small_swing", "a swing a hundredth as wide", _times("0.01", *(f"release.{name}" for name in SWING)),
+        "no_rotation",
+        "no rotation",
+        lambda _: {"site.rotation_rate": "0"},
+        "in what the rotation does",
+    ),
+    Experiment(
+        "small_swing",
+        "a swing a hundredth as wide",
+        _times("0.01", *_SWING),
         "in what a wide swing does",
     ),
     Experiment("pushed", "the release pushed", _pushed),
     Experiment("twice_length", "twice the length", _times("2", "pendulum.length")),
     Experiment("pole", "the pole", _pole, "in what the latitude does"),
     Experiment("short_span", "half the span", _times("0.5", "run.t_end")),
-)  # fmt: skip
-MOST_RUNS = len(EXPERIMENTS)
+)
+MOST_RUNS = len(_EXPERIMENTS)
 
 
 @dataclass(frozen=True)
@@ -124,7 +148,8 @@ class Experiments:
 
     Attributes:
         runs: in their order.
-        measured: ids of the causes that make all files: of no explanation, one, or several that no run told apart.
+        measured: ids of the causes that explain all files: of no explanation, of one, or of several
+            that no run distinguishes.
         text: what follows from all runs.
     """
 
@@ -143,26 +168,36 @@ class Experiments:
 
 
 def possible(scene: Scene, command: str) -> list[Experiment]:
-    """Return the experiments for which a command has the placeholders: those that give a program all of a change.
+    """Return the experiments of which a command's placeholders pass on the whole change.
 
     Raises:
         InputError: there are none.
     """
-    words, given = set(re.findall(r"(?<!\{)\{(\w+)\}", command)), placeholders(scene)
-    angles, places = (
-        {name for name in given if re.match(form, name)} for form in ("a(ng|z)", "v?[xyz]0")
-    )
+    words = set(re.findall(r"(?<!\{)\{(\w+)\}", command))
+    given = placeholders(scene)
     experiments = []
-    for experiment in EXPERIMENTS:
+    for experiment in _EXPERIMENTS:
         try:
             values = placeholders(experiment.changed(scene))
-        except FoucaultError:  # the scene has no such form: twice its swing over the top
+        except FoucaultError:  # such a scene is impossible: twice its swing goes over the top
             continue
-        changed = {name for name, value in values.items() if value != given[name]} - {"z0", "vz0"}
-        complete = changed - angles <= words or (changed & angles and changed - places <= words)
-        if (changed and complete) or (experiment.finer > 1 and SETTING.strip("{}") in words):
+        changed = {name for name, value in values.items() if value != given[name]}
+        finer_step = experiment.finer > 1 and SETTING.strip("{}") in words
+        if finer_step or _passes_on(words, changed - {"z0", "vz0"}):
             experiments.append(experiment)
     if not experiments:
         expected = "a command with a placeholder that an experiment can change"
-        raise InputError("--experiments", command, expected, ADVICE)
+        raise InputError("--experiments", command, expected, _ADVICE)
     return experiments
+
+
+def _passes_on(words: set[str], changed: set[str]) -> bool:
+    """Return whether the placeholders of a command pass on all that changed.
+
+    A release may be given by its position or by its angles.
+    """
+    angles = {name for name in changed if re.match("a(ng|z)", name)}
+    positions = {name for name in changed if re.match("v?[xyz]0", name)}
+    if not changed:
+        return False
+    return changed - angles <= words or (bool(angles) and changed - positions <= words)

@@ -1,8 +1,8 @@
 """The explanations of several runs together: causes, and the way in which each follows the scene.
 
-One file does not show whether a program takes g to be 9.81, or 1.0003 times what it is given, or has a fast clock. Of a
-scene with another g these are different motions. So the numbers of all runs stand side by side as those of one file do,
-and are read in the same way.
+One file does not show whether a program takes g to be 9.81, or 1.0003 times what it is given, or
+has a fast clock. In a scene with another g these are different motions. So the rows of all runs are
+put together, and read like those of one file.
 """
 
 from __future__ import annotations
@@ -30,15 +30,17 @@ from ..programs import Program
 from ..readings import CauseReading
 from ..stepped import LONGEST, Steps, step_cause
 
-# how a cause follows the scene
-RULE, TYPED, FACTOR = "", ", whatever it is given", ", in proportion to what it is given"
+# how a cause follows the scene; the end of its sentence
+_RULE = ""
+TYPED = ", whatever it is given"
+FACTOR = ", in proportion to what it is given"
 # numbers that a scene, or {setting}, gives
-INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
-# times the square of the swing: what the leading error of a step leaves of the whole one
-WIDE = 2.0
-WHOLE = 1e-3  # of a number of steps: how far it may be from a whole one
-TRIED = 30  # readings of a family that are run
-EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
+_INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
+# relative error of the leading error of a step, over the square of the swing's angle
+_WIDE = 2.0
+_WHOLE = 1e-3  # of a number of steps: how far it may be from a whole number
+_TRIED = 30  # readings of a family that are run
+EQUAL = 0.35  # decades by which a reading that explains all files may be dearer than the cheapest
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class Trial:
     """A run of a program.
 
     Attributes:
-        problem: of the scene that it was given.
+        problem: the scene that it was given.
         case: its rows.
         setting: its {setting} over that of the first run.
     """
@@ -62,11 +64,16 @@ class Trial:
 
     @cached_property
     def causes(self) -> dict[tuple[str, str, int], Cause]:
-        """The mistakes that a program of its scene may have, by family, id, and number among those of one id."""
-        causes, seen = {}, defaultdict[tuple[str, str], Iterator[int]](count)
+        """The mistakes that a program of its scene may have.
+
+        The keys are the family, the id, and the index among those of one id.
+        """
+        causes = {}
+        counters = defaultdict[tuple[str, str], Iterator[int]](count)
         for kind in ("sphere", *MODELS):
             for cause in causes_of(self.case, kind):
-                causes[kind, cause.id, next(seen[kind, cause.id])] = cause
+                index = next(counters[kind, cause.id])
+                causes[kind, cause.id, index] = cause
         return causes
 
     def given(self, name: str) -> float:
@@ -82,14 +89,18 @@ class FollowedCause(NamedTuple):
     way: str
 
     def applied(self, program: Program, value: float, first: Trial, trial: Trial) -> Program:
-        """Return the program of a trial's scene with it; `value` is its number in the first scene."""
-        # a cause that the scene does not know, such as a sign of no rotation, does nothing there
-        if self.way == RULE:
-            return trial.causes[self.key].change(program) if self.key in trial.causes else program
-        program, free = self.cause.change(program), self.cause.free
+        """Return a trial's program with the cause; `value` is its number in the first scene."""
+        if self.way == _RULE:
+            # a cause that the scene does not have, such as the sign of no rotation, changes nothing
+            cause = trial.causes.get(self.key)
+            return program if cause is None else cause.change(program)
+        program = self.cause.change(program)
+        free = self.cause.free
+        if not free:
+            return program
         if self.way == FACTOR and first.given(free):
             value *= trial.given(free) / first.given(free)
-        return program.changed(**{free: value}) if free else program
+        return program.changed(**{free: value})
 
 
 @dataclass(frozen=True)
@@ -107,14 +118,14 @@ class Joint(Program):
     @cached_property
     def programs(self) -> list[Program]:
         """The program of each run."""
-        made = []
+        programs = []
         for trial in self.runs:
             program = trial.case.right.changed(kind=self.kind)
             for part in self.parts:
                 value = getattr(self, part.cause.free) if part.cause.free else 0.0
                 program = part.applied(program, value, self.runs[0], trial)
-            made.append(program)
-        return made
+            programs.append(program)
+        return programs
 
     @property
     def sensible(self) -> bool:
@@ -122,20 +133,21 @@ class Joint(Program):
         return all(program.sensible for program in self.programs)
 
     def theta(self) -> Array:
-        """Return the numbers of all runs, those of the first before."""
+        """Return the theta of all runs, one after the other."""
         return np.concatenate([program.theta() for program in self.programs])
 
 
 @dataclass(frozen=True)
 class JointCase(FileCase):
-    """The rows of all runs as those of one file, each in units of what may be left of it."""
+    """The rows of all runs as those of one file, weighted by their largest permitted residuals."""
 
     runs: tuple[Trial, ...] = ()
 
     @classmethod
     def of(cls, runs: Sequence[Trial]) -> JointCase:
         """Return the case of some runs."""
-        first, runs = runs[0].case, tuple(runs)
+        first = runs[0].case
+        runs = tuple(runs)
         joint = cls(**vars(first), runs=runs)
         times = np.concatenate([run.case.rows.times for run in runs])
         positions = joint.side_by_side([run.case.rows.positions for run in runs])
@@ -148,135 +160,178 @@ class JointCase(FileCase):
         return self.runs[0].case.enough / run.case.enough
 
     def side_by_side(self, rows: Sequence[Array]) -> Array:
-        """Return positions of each run as those of one."""
-        return np.concatenate(
-            [positions * self.weight(run) for positions, run in zip(rows, self.runs, strict=True)]
-        )
+        """Return the weighted positions of all runs as those of one file."""
+        weighted = [
+            positions * self.weight(run) for positions, run in zip(rows, self.runs, strict=True)
+        ]
+        return np.concatenate(weighted)
 
     def positions(self, program: Program) -> Array:
         """Return what a program writes in all runs."""
         assert isinstance(program, Joint)
-        made = zip(self.runs, program.programs, strict=True)
-        return self.side_by_side([run.case.positions(run_program) for run, run_program in made])
+        runs = zip(self.runs, program.programs, strict=True)
+        return self.side_by_side([run.case.positions(run_program) for run, run_program in runs])
 
-    def _fit(self, kind: str, fits: Sequence[FamilyFit]) -> FamilyFit:
-        weights = [
-            self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times))
-            for run in self.runs
-        ]
-        fits = [
-            replace(fit, rest=w * fit.rest, slopes=w * fit.slopes)
-            for w, fit in zip(weights, fits, strict=True)
-        ]
-        blocks = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
-        slopes = np.block(
-            [[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks]
-        )
-        free = tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free)
+    def _fit(self, kind: str) -> FamilyFit:
+        """Return the fits of a family to all runs as one fit."""
+        fits = []
+        for run in self.runs:
+            fit = run.fits[kind]
+            share = math.sqrt(len(run.case.rows.times) / len(self.rows.times))
+            weight = self.weight(run) * share
+            fits.append(replace(fit, rest=weight * fit.rest, slopes=weight * fit.slopes))
+        theta = np.concatenate([fit.theta for fit in fits])
         rest = math.hypot(*(fit.rest for fit in fits))
-        return FamilyFit(kind, np.concatenate([fit.theta for fit in fits]), rest, free, slopes)
+        free = []
+        for index, fit in enumerate(fits):
+            first = index * len(fit.theta)
+            free += [first + i for i in fit.free]
+        # the triangular factor of the slopes is as good as they are, and shorter
+        triangles = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
+        return FamilyFit(kind, theta, rest, tuple(free), _block_diagonal(triangles))
 
     def causes(self, kind: str) -> list[Cause]:
-        """Return the causes of a family in every way in which the runs may distinguish them."""
+        """Return the causes of a family, in every way in which the runs may distinguish them."""
         causes = []
         for key, cause in self.runs[0].causes.items():
-            varied = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
-            ways = (TYPED, FACTOR)[: 1 + varied] if cause.free else (RULE, TYPED)
-            causes += [
-                _following(FollowedCause(key, cause, way), varied) for way in ways if key[0] == kind
-            ]
+            if key[0] != kind:
+                continue
+            varied = cause.free in _INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
+            if not cause.free:
+                ways = [_RULE, TYPED]
+            else:
+                ways = [TYPED, FACTOR] if varied else [TYPED]
+            causes += [_following(FollowedCause(key, cause, way), varied) for way in ways]
         return causes
 
     def readings(self, most: float = 1.0) -> list[CauseReading]:
-        """Return the readings of all runs that leave of each no more than may be left, `most` times; the best first."""
-        kinds = [kind for kind in self.runs[0].fits if all(kind in run.fits for run in self.runs)]
-        fits = [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
+        """Return the readings that explain all runs, the best first.
+
+        Their residuals are at most `most` times what is permitted in each run.
+        """
+        fits = [self._fit(kind) for kind in self._common_kinds()]
         finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
         readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
         readings = [
-            polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)
+            polished(self, reading) for reading in ranked(self, readers, self.causes, _TRIED)
         ]
-        return sorted(
-            (reading for reading in readings if self.off(reading) <= most),
-            key=lambda reading: reading.score,
-        )
+        explaining = [reading for reading in readings if self.off(reading) <= most]
+        return sorted(explaining, key=lambda reading: reading.score)
+
+    def _common_kinds(self) -> list[str]:
+        """Return the families that fit all runs."""
+        kinds = list(self.runs[0].fits)
+        for run in self.runs:
+            kinds = [kind for kind in kinds if kind in run.fits]
+        return kinds
 
     def off(self, reading: CauseReading) -> float:
-        """Return the most that a reading leaves of a run, over what may be left."""
+        """Return the largest residual of a reading in any run, over what is permitted there."""
         assert isinstance(reading.program, Joint)
         most = 0.0
         for run, program in zip(self.runs, reading.program.programs, strict=True):
-            made, allowed = run.case.positions(program), run.case.enough
-            if program.method is not None:
-                # what the leading error of a step leaves of the whole one on the sphere
-                effect = largest(made - run.case.positions(replace(program, method=None, step=0.0)))
-                width = float(np.hypot(*run.case.rows.plane.T).max()) / run.case.right.length
-                allowed += WIDE * width**2 * effect if program.kind == "sphere" else 0.0
-            most = max(most, largest(run.case.rows.positions - made) / allowed)
+            positions = run.case.positions(program)
+            permitted_m = run.case.enough
+            if program.method is not None and program.kind == "sphere":
+                permitted_m += _error_of_effect_m(run.case, program, positions)
+            most = max(most, largest(run.case.rows.positions - positions) / permitted_m)
         return most
 
     def without_steps(
         self, steps: Steps, way: str, reading: CauseReading | None = None
     ) -> tuple[JointCase, Deviation]:
-        """Return the case with what steps do to the programs of a reading taken from the rows, and that cause."""
-        program, seen, causes = self.right if reading is None else reading.program, [], []
+        """Return the case with the effect of steps subtracted from its rows, and their cause.
+
+        Args:
+            steps: of the first run.
+            way: TYPED or FACTOR: how a step follows {setting}.
+            reading: of the programs that take the steps; None for right programs.
+        """
+        program = self.right if reading is None else reading.program
         assert isinstance(program, Joint)
+        runs = []
+        causes = []
         for run, run_program in zip(self.runs, program.programs, strict=True):
-            taken = replace(
-                steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0))
-            )
-            case = run.case.part(
-                int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum())
-            )
+            setting = run.setting if way == FACTOR else 1.0
+            run_steps = replace(steps, steps_per_row=round(steps.steps_per_row / setting))
+            count = int((run.case.rows.times <= run_steps.step_s * LONGEST).sum())
+            case = run.case.part(count)
             pendulum, theta = case.pendulum_of(run_program)
-            moved = replace(taken, **vars(pendulum)).rows(theta, case.rows.times, 2)
-            effect = moved - pendulum.rows(theta, case.rows.times, 2)
-            case = replace(case, rows=replace(case.rows, positions=case.rows.positions - effect))
-            seen.append(replace(run, case=case))
-            causes.append(step_cause(taken, effect))
-        return JointCase.of(seen), causes[0]
+            times = case.rows.times
+            stepped = replace(run_steps, **vars(pendulum)).rows(theta, times, 2)
+            effect = stepped - pendulum.rows(theta, times, 2)
+            rows = replace(case.rows, positions=case.rows.positions - effect)
+            runs.append(replace(run, case=replace(case, rows=rows)))
+            causes.append(step_cause(run_steps, effect))
+        return JointCase.of(runs), causes[0]
 
     def explanation_of(self, reading: CauseReading, *besides: Deviation) -> Explanation:
-        """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
+        """Return the explanation of the first run by a reading, and what was subtracted before."""
         assert isinstance(reading.program, Joint)
         case = self.runs[0].case
-        left_m = largest(case.left(reading.program.programs[0]))
+        program = reading.program.programs[0]
         spacing = float(case.rows.times[1] - case.rows.times[0])
         causes = [
-            _by_order(cause, spacing, reading.program.programs[0].method)
+            _by_order(cause, spacing, program.method)
             for cause in (*sized(case, reading), *besides)
             if cause.size_m > case.enough
         ]
         return Explanation(
             causes=tuple(causes),
-            corrected_m=left_m,
+            corrected_m=largest(case.left(program)),
             score=reading.score,
             allowed_m=case.allowed_m,
         )
 
 
+def _block_diagonal(blocks: Sequence[Array]) -> Array:
+    """Return the matrix with some blocks along its diagonal, and zeros elsewhere."""
+    rows = sum(len(block) for block in blocks)
+    columns = sum(block.shape[1] for block in blocks)
+    matrix = np.zeros((rows, columns))
+    row = 0
+    column = 0
+    for block in blocks:
+        next_row = row + len(block)
+        next_column = column + block.shape[1]
+        matrix[row:next_row, column:next_column] = block
+        row = next_row
+        column = next_column
+    return matrix
+
+
+def _error_of_effect_m(case: FileCase, program: Program, positions: Array) -> float:
+    """Return an estimate of the difference between the leading and the whole error of a step."""
+    exact = case.positions(replace(program, method=None, step=0.0))
+    width = float(np.hypot(*case.rows.plane.T).max()) / case.right.length
+    return _WIDE * width**2 * largest(positions - exact)
+
+
 def _by_order(cause: Deviation, spacing: float, method: FixedStepMethod | None) -> Deviation:
-    """Return a cause; of a step that does not go into the spacing of the rows only the order that was measured."""
+    """Return a cause; if a step does not divide the rows' spacing, only its measured order."""
     if cause.stage != "integrator" or not cause.value or method is None:
         return cause
     count = spacing / cause.value
-    if abs(count - round(count)) <= WHOLE * count:
+    if abs(count - round(count)) <= _WHOLE * count:
         return cause
-    way = next((way for way in (TYPED, FACTOR) if way and cause.text.endswith(way)), "")
-    less = f"half the step, a {2**method.order}th of the error"
-    text = (
-        f"has the error of a method of order {method.order} ({less}), such as {method.title}{way}"
-    )
+    way = next((way for way in (TYPED, FACTOR) if cause.text.endswith(way)), "")
+    smaller = f"half the step, a {2**method.order}th of the error"
+    order = f"has the error of a method of order {method.order} ({smaller})"
+    text = f"{order}, such as {method.title}{way}"
     return replace(cause, id=f"integrator_order_{method.order}", text=text)
 
 
 def _following(part: FollowedCause, varied: bool) -> Cause:
-    """Return a cause that changes the programs of all runs; its text says how, if the runs varied its number."""
+    """Return a cause that changes the programs of all runs.
+
+    If the runs varied its number, its text says how it follows them.
+    """
 
     def change(program: Program) -> Program:
         changed = part.cause.change(program)
-        return (
-            changed.changed(parts=(*changed.parts, part)) if isinstance(changed, Joint) else changed
-        )
+        if not isinstance(changed, Joint):
+            return changed
+        return changed.changed(parts=(*changed.parts, part))
 
-    return replace(part.cause, change=change, text=part.cause.text + part.way * varied)
+    text = part.cause.text + part.way if varied else part.cause.text
+    return replace(part.cause, change=change, text=text)
