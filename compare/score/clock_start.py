@@ -25,7 +25,7 @@ from ..candidates.clock import shown
 Ends = tuple[Fraction, Fraction]
 
 _MOST_PLACES = 9  # of a time in s
-SUBTRACT = "Subtract the time that the clock showed at the release."
+SUBTRACT = "Subtract what the clock showed at the release."
 
 
 def counted_from_release(

@@ -152,7 +152,10 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
     if not paths:
         advice = "`foucault generate --all` makes those that ship."
         raise InputError(
-            "--data", str(folder), "a folder that contains the folders of golden datasets", advice
+            "--data",
+            str(folder),
+            "a folder of golden datasets, each in a folder of its own",
+            advice,
         )
     readings: dict[str, dict[str, Golden]] = {}
     for path in paths:

@@ -134,7 +134,7 @@ function countedFromRelease(candidate, truth, tolerance) {
   const [east, north] = [truth.grid.x[0], truth.grid.y[0]];
   const distance = Math.hypot(x[0] - east, y[0] - north);
   if (distance > (tolerance ?? truth.words.TOLERANCE * Math.hypot(east, north))) {
-    throw new Unreadable(`The clock showed ${shownBy(start, truth)} in the first row, which is ${distance.toPrecision(3)} m off the release. ${truth.words.SUBTRACT}`);
+    throw new Unreadable(`The clock showed ${shownBy(start, truth)} in the first row, which is ${distance.toPrecision(3)} m from the release. ${truth.words.SUBTRACT}`);
   }
   const note = `Reading: the clock showed ${shownBy(start, truth)} in the first row, which is at the release: times are counted from it.`;
   return {

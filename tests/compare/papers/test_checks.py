@@ -49,14 +49,14 @@ def test_a_misprint_needs_a_correction_that_holds() -> None:
     assert (
         Identity("a", "here", "", wrong, truth, "right", double_angle).row().verdict == "misprint"
     )
-    with pytest.raises(UnexplainedError, match="no declared correction holds"):
+    with pytest.raises(UnexplainedError, match="no declared correction removes it"):
         Identity("a", "here", "", wrong, truth, "also wrong", wrong).row()
 
 
 def test_what_is_right_cannot_be_declared_wrong() -> None:
-    with pytest.raises(UnexplainedError, match="the print is right"):
+    with pytest.raises(UnexplainedError, match="the printed formula is right"):
         Identity("a", "here", "", double_angle, truth, "another", double_angle).row()
-    with pytest.raises(UnexplainedError, match="the sentence holds"):
+    with pytest.raises(UnexplainedError, match="the sentence is true"):
         Statement("a", "here", "", lambda: Answer(True, "1"), "no", lambda: True).row()
 
 

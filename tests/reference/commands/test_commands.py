@@ -126,9 +126,9 @@ def test_a_bob_that_goes_over_the_top_has_no_period_and_the_proof_says_the_same(
     assigned = [word for change in changes for word in ("--set", change)]
     document = json.loads(foucault("show", scene, *assigned, "--proved", "--json")[1])
     for part in ("motion", "proved"):
-        assert ("lie on one side" in document[part].get("reason", "")) == ROUND[words], document[
-            part
-        ]
+        assert ("lie on the same side" in document[part].get("reason", "")) == ROUND[words], (
+            document[part]
+        )
         assert (document[part].get("period_s") is None) == ROUND[words]
 
 
