@@ -514,6 +514,31 @@ def either_of(first: Explanation, second: Explanation) -> Explanation:
     return replace(first, causes=(cause,), conventions=(), model=None)
 
 
+def with_rival_step(named: Explanation, stepped: Explanation, case: FileCase) -> Explanation:
+    """Return the better of two explanations with different steps, or one in which either step may be the cause.
+
+    The other one is no rival if it is dearer.
+    """
+    rest_m = max(named.rest_m, case.resolution)
+    rival_m = max(stepped.rest_m, case.resolution)
+    if stepped.price > named.price or rival_m > RIVAL * rest_m:
+        return named
+    if RIVAL * rival_m < rest_m:
+        return stepped
+    own = [cause for cause in named.causes if cause.stage == "integrator"]
+    other = [cause for cause in stepped.causes if cause.stage == "integrator"]
+    if len(own) != 1 or len(other) != 1 or own[0].id == other[0].id:
+        return named
+    either = Deviation(
+        f"{own[0].id}|{other[0].id}",
+        f"either {own[0].text}, or {other[0].text}",
+        own[0].size_m,
+        EITHER,
+    )
+    causes = tuple(either if cause is own[0] else cause for cause in named.causes)
+    return replace(named, causes=causes)
+
+
 def hedged(cause: Deviation) -> Deviation:
     """Return a cause as one that the motion is merely like."""
     text = f"moves like one that {cause.text}"

@@ -22,7 +22,7 @@ from .case import (
     NamedModel,
     largest,
 )
-from .claims import either_of, explanation_of, nothing
+from .claims import either_of, explanation_of, nothing, with_rival_step
 from .conventions import (
     ROUGHLY,
     axes,
@@ -39,7 +39,7 @@ from .formulas import of_formula
 from .observed import of_observation
 from .programs import Program, SphericalPendulum
 from .slips import falls, growth, slip
-from .stepped import of_steps
+from .stepped import of_loops, of_steps
 from .thresholds import NEEDED, RIVAL
 
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
@@ -246,6 +246,10 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
         stepped = of_steps(case, best.reading)
         if stepped is not None and stepped.rest_m <= named.rest_m:
             return stepped
+    elif program.method is not None:
+        loop = of_loops(case)
+        if loop is not None:
+            named = with_rival_step(named, loop, case)
     if named.corrected_m > case.enough:
         return _of_approximation(case, scene, named) or named
     certain = all(cause.stage != AS_IF for cause in named.causes)

@@ -176,13 +176,12 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
         case: the rows.
         reading: of the rows, with the integrator's step known roughly; or None.
     """
-    rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
-    flat = replace(case, rows=rows, truth=case.truth[:, :2])
-    for loop in likely_loops(flat):
-        explanation = _explanation_with(flat, loop)
-        if explanation is not None:
-            return explanation
+    by_loop = of_loops(case)
+    if by_loop is not None:
+        return by_loop
 
+    rows = case.rows
+    flat = _in_the_plane(case)
     right = case.right.changed(length=case.rows.cord or case.right.length)
     program = None if reading is None else reading.program
     explanations = []
@@ -198,6 +197,22 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
         if all(cause.stage != AS_IF for cause in explanation.causes):
             break
     return min(explanations, key=lambda explanation: explanation.score, default=None)
+
+
+def of_loops(case: FileCase) -> Explanation | None:
+    """Return the explanation of rows that a loop of statements made, one after the other; None if none did."""
+    flat = _in_the_plane(case)
+    for loop in likely_loops(flat):
+        explanation = _explanation_with(flat, loop)
+        if explanation is not None:
+            return explanation
+    return None
+
+
+def _in_the_plane(case: FileCase) -> FileCase:
+    """Return a case of x and y alone."""
+    rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
+    return replace(case, rows=rows, truth=case.truth[:, :2])
 
 
 @dataclass(frozen=True)

@@ -156,12 +156,12 @@ def drawn_loop(draw: random.Random, language: str) -> Loop:
         "d": 0.0,
         "c": damping,
     }
-    source = _source(language, body, values, out, every, rows)
+    source = source_of(language, body, values, out, every, rows)
     needed = true - {"solar_day", "damped_steps"}
     return Loop(name, language, source, scene, true, {f"integrator_{word}"} & needed)
 
 
-def _source(
+def source_of(
     language: str, body: list[str], values: dict[str, float], out: float, every: int, rows: int
 ) -> str:
     start = [f"{name} = {value!r}" for name, value in values.items()]

@@ -8,8 +8,10 @@ import shutil
 from pathlib import Path
 
 import pytest
-from loops import LANGUAGES, LOOPS, drawn_loop
+from loops import LANGUAGES, LOOPS, Loop, drawn_loop, source_of
 from mistakes import told
+
+from reference import load_scene
 
 # in every run; the others under --long
 USUAL = ("in_turn", "drift_in_turn", "leapfrog")
@@ -40,3 +42,43 @@ def test_the_order_of_the_statements_is_named_and_no_other(
         "pendulum.drag" not in loop.true
     ):  # a factor on the velocities is not known beside every method
         assert found.words >= loop.needed, list(found.explanation.lines())
+
+
+def test_a_loop_that_a_named_method_explains_nearly_as_well_is_not_called_that_method(
+    tmp_path: Path,
+) -> None:
+    """Steps of 4 ms for a minute: what the new velocity in the other line does is a thousandth of the tolerance."""
+    body, word = LOOPS["in_turn_y_first"]
+    step_s = 0.0938 / 23
+    values = {
+        "x": 0.01,
+        "y": 0.0,
+        "vx": 0.0,
+        "vy": 0.0,
+        "h": step_s,
+        "q": 9.81,
+        "f": 1.1e-4,
+        "d": 0.0,
+        "c": 1.0,
+    }
+    sine = values["f"] / 2 / 7.292115e-5
+    scene = load_scene(
+        "paris",
+        [
+            "pendulum.length=1",
+            f"site.latitude={math.degrees(math.asin(sine))!r}",
+            "site.gravity=9.81",
+            "site.gravity_is=effective",
+            "release.x=0.01",
+            "release.y=0",
+            f"run.t_end={0.0938 * 568!r}",
+            "run.transits=false",
+            "inputs=binary64",
+        ],
+    )
+    source = source_of("Python", body, values, 0.0938, 23, 568)
+    loop = Loop("in_turn_y_first", "Python", source, scene, set(), set())
+    times, columns = loop.rows(tmp_path)
+    found = told(scene, times, columns, 1e-8)
+    assert "integrator_semi_implicit_euler" not in found.words, list(found.explanation.lines())
+    assert any(f"integrator_{word}" in cause.id for cause in found.explanation.causes)
