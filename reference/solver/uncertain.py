@@ -95,7 +95,7 @@ def _check_ends(scene: Scene, widths: Mapping[str, Fraction]) -> None:
             try:
                 checked_value(name, decimal(end), "decimal")
             except InputError as error:
-                reached = Described(f"±{decimal(half)}, up to {decimal(end)}")
+                reached = Described(f"±{decimal(half)}, which reaches {decimal(end)}")
                 advice = "Take a smaller width."
                 raise InputError(f"--uncertain {name}", reached, error.expected, advice) from None
 

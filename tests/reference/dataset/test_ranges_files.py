@@ -253,7 +253,7 @@ def test_line_ends_that_a_copy_changed_are_named(ranges, tmp_path, name):
     data = (folder / name).read_bytes()
     (folder / name).write_bytes(data.replace(b"\n", b"\r\n"))
     (problem,) = verify_ranges(folder)
-    assert problem.startswith(name) and "its lines end with CR LF and not with LF" in problem
+    assert problem.startswith(name) and "its lines end with CR LF instead of LF" in problem
 
 
 def test_ranges_of_a_proof_that_looked_for_no_transits_do_not_say_that_there_are_none(tmp_path):

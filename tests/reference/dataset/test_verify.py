@@ -570,7 +570,7 @@ def test_figures_that_another_machine_measures_otherwise_are_told_and_not_wrong(
 def test_line_ends_that_a_copy_changed_are_named(dataset, name):
     data = (dataset / name).read_bytes()
     (dataset / name).write_bytes(data.replace(b"\n", b"\r\n"))
-    with pytest.raises(DatasetError, match=rf"{name}: its lines end with CR LF and not with LF"):
+    with pytest.raises(DatasetError, match=rf"{name}: its lines end with CR LF instead of LF"):
         reference.load(dataset)
     (dataset / name).write_bytes(data.replace(b"\n", b"\r\n", 1) + b"x")
     assert "CR LF" not in problems(dataset)
