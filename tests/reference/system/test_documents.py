@@ -28,9 +28,9 @@ def filled(*pieces: str) -> str:
 
 
 WORST = {
-    "dotted key": (filled("", "a.", "a=1"), f"at most {MAX_DEPTH} words"),
-    "dotted table": (filled("[", "a . ", "a]"), f"at most {MAX_DEPTH} words"),
-    "quoted words": (filled("", '"\\"".', "a=1"), f"at most {MAX_DEPTH} words"),
+    "dotted key": (filled("", "a.", "a=1"), f"at most {MAX_DEPTH} parts"),
+    "dotted table": (filled("[", "a . ", "a]"), f"at most {MAX_DEPTH} parts"),
+    "quoted words": (filled("", '"\\"".', "a=1"), f"at most {MAX_DEPTH} parts"),
     "many deep keys": (filled("", "a." * (MAX_DEPTH - 1) + "a\n", ""), "a TOML file"),
     "quotes": (filled("", '\\"', ""), "a TOML file"),
     "lists in lists": (filled("a=", "[", ""), "nested too deeply"),
