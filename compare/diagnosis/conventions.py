@@ -179,7 +179,8 @@ def _with_heights(
     drift = float(np.ptp(cord))
     if drift > max(20 * rows.noise, _OFF * length):
         spring = Deviation("off_the_sphere", _SPRING, drift)
-        return _flat(corrected.changed(spring, cord=float(cord.mean())))
+        in_order = replace(corrected, positions=np.column_stack([plane, column]))
+        return _flat(in_order.changed(spring, cord=float(cord.mean())))
     if corrected is not rows:
         return replace(corrected, positions=np.column_stack([plane, column]))
     # a slight drift is not reported, but such heights cannot be fitted either

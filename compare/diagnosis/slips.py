@@ -23,6 +23,7 @@ from reference.numbers.precision import Array
 from ..observed.least_squares import solved
 from .case import FileRows
 from .programs import Program
+from .thresholds import RIVAL
 
 # stencils of order 6 for the first and the second derivative
 _FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
@@ -39,6 +40,8 @@ _WORK = 0.2  # of |force| |velocity|: a force that does work
 _ALIKE = 0.2  # relative difference of two terms with the same error
 _LOW = 0.3  # of the length: farther out, the force is not linear
 _TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
+# equation and name of two terms whose same error is that of one number: g or the length, drag
+_ONE_NUMBER = ((("x", "x"), ("y", "y")), (("x", "vx"), ("y", "vy")))
 _NUDGE = 1e-6
 _PARTS = 4  # of the rows
 _GROWN = 2.0  # how many times as far as in the first part a growing motion reaches in the last
@@ -191,8 +194,25 @@ def _fewest_coefficients(basis: Array, errors: Array) -> dict[tuple[int, int], f
         best = min(fits, key=lambda place: (fits[place].residual, place))
         chosen.append(best)
         if fits[best].residual < _EXPLAINED * total:
+            most = RIVAL**2 * fits[best].residual
+            if len(chosen) > 1 and _is_one_number(basis, errors, most):
+                return {}
             return {place: fits[best].coefficients[place] for place in chosen}
     return {}
+
+
+def _is_one_number(basis: Array, errors: Array, most: float) -> bool:
+    """Return whether the same error in x and y, of one number, leaves no more than `most`, a sum of squares.
+
+    In a swing whose x and y keep their ratio, a term with x does what one with y does.
+    """
+    for pair in _ONE_NUMBER:
+        places = [("xy".index(equation), list(_TERMS).index(name)) for equation, name in pair]
+        fit = _fit(basis, errors, places)
+        first, second = fit.coefficients.values()
+        if fit.residual <= most and first * second > 0:
+            return True
+    return False
 
 
 @dataclass(frozen=True)
@@ -221,8 +241,7 @@ def _alike(terms: list[_Term]) -> bool:
 
     Then a number, such as g or drag, or the integrator is wrong.
     """
-    pairs = ({("x", "x"), ("y", "y")}, {("x", "vx"), ("y", "vy")})
-    if {(term.equation, term.name) for term in terms} not in pairs:
+    if {(term.equation, term.name) for term in terms} not in [set(pair) for pair in _ONE_NUMBER]:
         return False
     first, second = (term.value - term.right for term in terms)
     return abs(first - second) < _ALIKE * abs(first)

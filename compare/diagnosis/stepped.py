@@ -312,6 +312,8 @@ def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
     candidates: list[_Candidate] = []
     for method in _FINEST:
         candidates += _candidates(swing, method, program)
+    # steps that diverge leave no number
+    candidates = [candidate for candidate in candidates if math.isfinite(candidate.residual_m)]
     candidates.sort(key=lambda candidate: candidate.residual_m)
     sizes = [candidate.residual_m for candidate in candidates]
     least_m = next((size for size in sizes if size), 0.0)

@@ -10,6 +10,9 @@ from mistakes import told
 from scipy.special import ellipj, ellipk
 from small_scenes import make_scene
 
+from compare.diagnosis.case import FileRows
+from compare.diagnosis.conventions import heights
+
 
 def test_no_wide_swing_counts_time_in_another_unit(size):
     """100 exact pendulums of 30° to 85° in a plane (Jacobi's elliptic functions), rows 0.02 s to 1 s apart.
@@ -37,3 +40,16 @@ def test_no_wide_swing_counts_time_in_another_unit(size):
         found = told(scene, times, {"x": x, "y": 0 * x}, 1e-6)
         assert not found.agrees
         assert found.words == {"gravity_9.81"}, (degrees, step)
+
+
+def test_a_bob_that_leaves_the_sphere_keeps_its_horizontal_columns_in_order():
+    """Columns x, height, north of a cord of 10 m that stretches: without heights, x and north are left."""
+    times = 0.1 * np.arange(100)
+    cord = 10 + 1e-4 * np.sin(3 * times)
+    east, north = 0.5 * np.cos(times), 0.3 * np.sin(times)
+    down = -np.sqrt(cord**2 - east**2 - north**2)
+    read = heights(FileRows(times, np.column_stack([east, down, north]), 0.0), 10.0)
+    assert [part.id for part in read.conventions] == ["vertical_is_not_z", "off_the_sphere"]
+    np.testing.assert_array_equal(
+        np.sort(np.abs(read.plane).max(axis=0)), [0.3 * np.abs(np.sin(times)).max(), 0.5]
+    )

@@ -26,6 +26,8 @@ from small_scenes import make_scene
 from typer.testing import CliRunner
 
 from compare import APPROXIMATIONS, Candidate, Score, judge
+from compare.diagnosis.case import FileRows
+from compare.diagnosis.slips import slip
 from compare.score.document import document
 from foucault import commands
 from reference import Scene, load_scene, trajectory
@@ -618,3 +620,28 @@ def test_rows_too_far_apart_for_their_own_motion_tell_no_slip() -> None:
     columns = dict(zip("xy", trajectory(scene, seconds).T, strict=False))
     found = told(scene, seconds / 60, columns, 7e-7)
     assert not found.agrees and found.explanation.slip == ""
+
+
+def test_in_a_straight_swing_no_term_is_named_that_another_one_replaces() -> None:
+    """Where y = 1.5 x, a term with x in the equation of y does what one with y does: the length alone is wrong."""
+    scene = load_scene(
+        "paris",
+        ["pendulum.length=1", "site.rotation_rate=0", "release.x=0.01", "release.y=0.015"],
+    )
+    times = 0.1 * np.arange(300)
+    swing = np.cos(np.sqrt(9.80665 / 1.006) * times)
+    rows = FileRows(times, np.column_stack([0.01 * swing, 0.015 * swing]), 0.0)
+    assert slip(rows, scene) == ""
+
+
+def test_a_term_that_no_other_one_replaces_is_named() -> None:
+    """An ellipse whose y swings too slowly: the term with y in its equation, and no other."""
+    scene = load_scene(
+        "paris", ["pendulum.length=1", "site.rotation_rate=0", "release.x=0.01", "release.y=0"]
+    )
+    times = 0.1 * np.arange(300)
+    right = np.sqrt(9.80665)
+    columns = [0.01 * np.cos(right * times), 0.004 * np.sin(0.99 * right * times)]
+    said = slip(FileRows(times, np.column_stack(columns), 0.0), scene)
+    assert "in the equation of y, the term with y" in said
+    assert "equation of x" not in said
