@@ -129,7 +129,9 @@ def test_other_versions_are_refused_before_any_work(cluster, tmp_path, monkeypat
 
     here = versions.get_package_info
     monkeypatch.setattr(versions, "get_package_info", lambda names: here(names) | {"heyoka": "1.0"})
-    with pytest.raises(InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as here"):
+    with pytest.raises(
+        InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as on this machine"
+    ):
         run(asked(tmp_path / "out"), tmp_path / "out", cluster=cluster.scheduler_address)
     assert list((tmp_path / "out/rows").iterdir()) == []
 
@@ -142,7 +144,7 @@ def test_a_worker_that_comes_later_with_other_versions_does_no_work(cluster):
         assert scheduler.submit(abs, -1).result() == 1
         scheduler.versions["heyoka"] = "1.0"
         with pytest.raises(
-            InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as here"
+            InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as on this machine"
         ):
             scheduler.submit(abs, -1).result()
 
