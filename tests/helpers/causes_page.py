@@ -48,14 +48,14 @@ def lines() -> Iterator[str]:
         raise SystemExit(
             f"{__file__}: DO lacks {set(said) - set(DO)}, and has for nothing {set(DO) - set(said)}"
         )
-    yield "The word stands in the JSON document (`causes`). A word that ends in … stands for several."
+    yield "The word appears in the JSON document (`causes`). A word that ends in … represents several."
     yield ""
     yield "| word | your program … | what to do |"
     yield "|---|---|---|"
     for word, text in said.items():
         yield f"| `{word}{'…' * (word in FAMILIES)}` | {text.replace('|', chr(92) + '|')} | {DO[word]} |"
     yield ""
-    yield "And these are habits of a file. Most are converted, and cost nothing:"
+    yield "And these are conventions of a file. Most are converted:"
     yield ""
     yield "| word | your file … | what to do |"
     yield "|---|---|---|"
