@@ -312,7 +312,7 @@ def of_my_own() -> dict[str, Spelling]:
     )
     found["date of no calendar"] = refused(
         table("time,x,y", [(f"2026-02-30T12:00:0{i}", *row[1:]) for i, row in enumerate(HALVES)]),
-        "calendar",
+        "a date that exists",
     )
     found["date and zone"] = read(
         table(

@@ -88,7 +88,7 @@ def test_braces_that_are_no_placeholder_stay_and_doubled_ones_too(paris):
         ("prog {x1}", r"one of {x0}, {y0}"),
         ("prog {x1}", r"{grid_step}, {setting}"),
         ("prog {X0}", r"got '{X0}'"),
-        ("prog {x0} | tr ' ' ,", r"without \|\. No shell is used"),
+        ("prog {x0} | tr ' ' ,", r"without \|\. The command is run without a shell"),
         ("prog > out.csv", "without >"),
         ("prog 2>&1", "without 2>&1"),
         ("make && ./prog", "without &&"),

@@ -336,7 +336,7 @@ def test_a_file_that_ends_early_or_has_nothing_after_the_start_is_a_row_with_its
         (["--cpu", "1"], "2 positive numbers"),
         (["--cpu", "1,0"], "2 positive numbers"),
         (["--cpu", "1,x"], "2 positive numbers"),
-        (["--candidates", "GOOD"], "whose name no other row has"),
+        (["--candidates", "GOOD"], "another row has this name"),
         (["--candidates", "missing.csv"], "No such file"),
         (["--approximations"], "--approximations"),
     ],

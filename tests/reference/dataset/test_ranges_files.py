@@ -81,10 +81,10 @@ def test_ranges_replace_ranges_and_nothing_else(ranges, tmp_path):
     assert before == {path.name: path.read_bytes() for path in folder.iterdir()}
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "manifest.json").write_text("{}", encoding="utf-8")
-    with pytest.raises(reference.InputError, match="or older ranges"):
+    with pytest.raises(reference.InputError, match="with older ranges"):
         write_ranges(ranges, tmp_path / "other")
     point = reference.solve("paris", t_end="20", digits=6, level="computed")
-    with pytest.raises(reference.InputError, match="or an older dataset"):
+    with pytest.raises(reference.InputError, match="with an older dataset"):
         reference.write(point, folder)
     assert before == {path.name: path.read_bytes() for path in folder.iterdir()}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "out"]

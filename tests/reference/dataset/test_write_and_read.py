@@ -321,7 +321,7 @@ def test_a_target_that_is_something_else_is_left_alone(tmp_path):
     with pytest.raises(InputError, match="a folder that can be written to, with room"):
         check_target(Path("/proc/nowhere/paris"))
     (tmp_path / "manifest.json").write_text("{}")
-    with pytest.raises(InputError, match=r"'thesis\.txt' is there"):
+    with pytest.raises(InputError, match=r"contains 'thesis\.txt'"):
         check_target(tmp_path)
     assert (tmp_path / "thesis.txt").read_text() == "years of work"
 

@@ -328,7 +328,7 @@ def test_a_feed_that_dies_is_an_error_and_leaves_no_process(paris):
     next(steps)
     (process,) = children() - others
     os.kill(process, signal.SIGKILL)
-    with pytest.raises(IntegrationError, match="ended without"):
+    with pytest.raises(IntegrationError, match="ended before it returned"):
         feed.finished()
     feed.stop()
     assert children() <= others

@@ -63,7 +63,7 @@ def test_a_zero_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(
         moved = with_times(proved, word, [t + way * off * (i == k) for i, t in enumerate(times)])
         if not seen:
             with pytest.raises(
-                IntegrationError, match=f"does not find {name} {k + 1} of the enclosure"
+                IntegrationError, match=f"does not find {name} {k + 1} of the proof"
             ):
                 guarded(moved, pilot)
             continue

@@ -132,7 +132,7 @@ def test_an_error_of_the_function_arrives_as_an_integration_error():
 def test_a_child_that_is_killed_is_an_error_and_no_silence():
     worker = Worker(doubled, 1)
     worker.kill()
-    with pytest.raises(IntegrationError, match="ended without a result"):
+    with pytest.raises(IntegrationError, match="ended before it returned a result"):
         list(worker)
     worker.stop()
 
@@ -170,7 +170,7 @@ def test_a_pool_gives_results_and_tells_a_death_that_happens_twice(tmp_path):
         sums = [pool.submit(sum, [number, 1]) for number in range(5)]
         killed, second = pool.submit(die), pool.submit(die_once, str(tmp_path))
         assert [future.result() for future in sums] == [1, 2, 3, 4, 5]
-        with pytest.raises(WorkerDied, match="ended without a result"):
+        with pytest.raises(WorkerDied, match="ended before it returned a result"):
             killed.result()
         assert second.result() == "alive"
         with pytest.raises(FileNotFoundError):
