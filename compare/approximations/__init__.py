@@ -5,7 +5,7 @@
 >>> APPROXIMATIONS["linear_g"].trajectory(load_scene("paris"), [0.0, 16.4]).shape
 (2, 6)
 
-Those of the whole motion stand before those of a single number, then by file, then as they stand in
+Those of the whole motion come before those of a single number; within each, by file, then in the order of
 the file.
 """
 

@@ -33,8 +33,8 @@ class Deviation:
         id: a stable word.
         text: of a reading, its sentence; else the end of the sentence "Your file …" or "Your
             program …".
-        size_m: the distance in m by which it moves the bob, on top of what stands before it; 0 if
-            none is known.
+        size_m: the distance in m by which it moves the bob, in addition to the parts before it; 0
+            if that is unknown.
         stage: of a program's: gravity, model, input, release, frame, clock or integrator.
         value: a fitted number, in its unit.
         shift: by how much it differs from the scene's.

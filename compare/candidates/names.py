@@ -198,7 +198,7 @@ def _plain_unit(word: str) -> str:
 def size_of(unit: str, column: str) -> Fraction | None:
     """Return the size in SI units of a unit of time (of t), length (of x, y, z) or speed.
 
-    None if it is none of these.
+    None for any other unit.
 
     In the column of a speed, `ms` means m/s.
     """

@@ -130,8 +130,8 @@ def doubtful_number(columns: Sequence[Sequence[str]], commas_separate: bool) -> 
     None if the numbers decide it.
 
     A mark is decimal as soon as one number has it where thousands are not separated: in 0,5 or
-    12.25, not in 1,250. Where no number shows it, a point is decimal nevertheless, unless commas
-    are, or whole numbers stand in its column.
+    12.25, not in 1,250. If no number decides it, a point is taken as decimal, unless commas are
+    decimal or the column contains whole numbers.
 
     Args:
         columns: numbers as they are written.

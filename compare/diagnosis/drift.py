@@ -1,7 +1,7 @@
 """The error of an integrator that has no name: typed causes are read beside a phase and an amplitude that drift.
 
-In a linear motion the steps of any method make the swing a little too fast or too slow, and let it decay or grow. What
-rows tell of a program beside such an error is what no drift of the phase and of the amplitude changes.
+In a linear motion the steps of any method make the swing a little too fast or too slow, and let it decay or grow. Typed
+causes are read from what a drift of phase and amplitude does not change.
 """
 
 from __future__ import annotations
@@ -14,11 +14,9 @@ import numpy as np
 from .case import FileCase
 from .causes import DRIFT, causes_of, is_like_a_drift
 from .families import FamilyFit
-from .fitted import polished
+from .fitted import TRIED, polished
 from .programs import NAMES
 from .readings import CauseReading, Reader
-
-TRIED = 8  # readings of a family that are run
 
 
 def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]:

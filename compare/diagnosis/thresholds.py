@@ -12,9 +12,9 @@ FINEST = 1e-3
 # tests/compare/diagnosis/test_claims.py: test_rounding_is_no_error
 ROUNDED = 1.5
 
-# Times the residual: without a cause that is certain as much is left, everything else fitted again. Where the tolerance
-# is not reached, so many times as much, squared, has to be explained of the error for anything to be named, and to be
-# left without each typed cause beside a step error of no name.
+# Times the residual: at least as much is left without a cause that is certain, everything else fitted again. If the
+# tolerance is not reached, the error has to shrink by the square of this before anything is named; the same square
+# holds for each typed cause beside a step error of unknown method.
 # tests/compare/diagnosis/test_claims.py: test_what_is_hardly_needed_is_not_certain
 NEEDED = 10.0
 

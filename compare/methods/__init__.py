@@ -15,8 +15,8 @@ be timed alone:
     outcome.states                                  # x, y, z, vx, vy, vz at problem.times
 
 The ids of all methods are known when one is first looked up: the files are imported then, and a
-method's library when it prepares a problem. They are listed by family, then by file, then as they
-stand in the file.
+method's library when it prepares a problem. They are listed by family, then by file, then in the
+order of the file.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Boost odeint, GSL, CVODE and ARKODE as their users call them: from a program in C++, without Python.
 
-They stand beside the same codes behind a wrapper. The program is the traced equations and the
-library's part; it is compiled for the scene's equations once, and kept by its text, the compiler
-and the processor; a scene's numbers are in the file that it reads. It integrates, tells the CPU
+They are compared with the same codes behind a wrapper. The program consists of the traced equations
+and the library's part. It is compiled once for the scene's equations, and cached by its text, the
+compiler and the processor; it reads a scene's numbers from a file. It integrates, measures the CPU
 seconds of that by its own clock, and writes its states. A tolerance t means rtol = t and atol = t
 times each variable's swing; odeint takes one number for all, t times the smallest of them.
 """

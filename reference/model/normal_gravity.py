@@ -13,8 +13,8 @@ def normal_gravity(latitude_deg: float) -> float:
     """Return the normal gravity on the ellipsoid in m/s², which contains the centrifugal force.
 
     Somigliana's closed form with the constants of H. Moritz, Geodetic Reference System 1980. The
-    gravity of a place differs from it by up to 3e-3 m/s², of which 3.1e-6 m/s² for each metre of
-    altitude.
+    gravity of a place differs from it by the local anomaly, and is lower by 3.1e-6 m/s² for each
+    metre of altitude.
     """
     sine_squared = math.sin(math.radians(latitude_deg)) ** 2
     excess = 1 + _POLE_EXCESS * sine_squared

@@ -23,7 +23,7 @@ from .sensitivity import Sensitivity
 TOLERANCE = 1e-6
 
 _ROUNDING = 2.0**-DOUBLE_BITS  # largest relative error of a rounded number
-_TIMES = 577  # at least half of them up to any doubling of the time; several a swing, or hundreds of swings
+_TIMES = 577  # moments, evenly spaced, at which the motions are compared
 
 
 @dataclass(frozen=True)

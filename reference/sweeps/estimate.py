@@ -268,7 +268,7 @@ def _largest_sine(run: Outcomes) -> Array:
 def bend_of_pairs(rows: Rows, angle: Array) -> Array:
     """Return a bound of |d²xdot/dt²| between two close transits of swings up to an angle.
 
-    It is NaN where none is known.
+    It is NaN where no bound is known.
 
     With T the force along the cord over l, x'' = Coriolis - x T. Let M be the bound and h < π/(2ω)
     the time between the transits: |xdot| <= M h²/8 there, and x'' is zero somewhere, so that |x| <=
