@@ -48,6 +48,12 @@ if TYPE_CHECKING:
 _WRITING = "writing and checking the files"
 _WRITING_SHARE = 0.15  # of the time that solving takes
 _ENGINES = (AUTO, *engine_names())
+# what a level enclosed is followed by
+_CONFIRMED = {
+    "whole": "; confirmed by a second run",
+    "sampled": "; a sample confirmed by a second run",
+    "none": "",
+}
 _NEXT = "Next: `foucault verify {}` checks it."
 
 _SCENE = scene_argument(value="[SCENE]")
@@ -314,7 +320,7 @@ def _dataset_facts(solution: Solution, measured: dict[str, Any]) -> Iterator[Fac
     for word, zeros in solution.sections.items():
         yield word, counted(len(zeros.table), "passage")
     yield "digits", str(solution.scene.run.digits)
-    confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
+    confirmed = _CONFIRMED[measured["confirmed"]] if solution.proof else ""
     yield "level", f"{solution.level}{confirmed}"
     yield "positions", f"within {measured['bound_m']} m"
     run = solution.run

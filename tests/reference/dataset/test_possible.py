@@ -21,7 +21,7 @@ from reference.numbers.precision import fixed_decimal
 # m/s to the east, by the zeros in the dip
 SPEEDS = {0: "-0.0077460679307865453684", 2: "-0.0077460679307865453685"}
 BEND = Fraction("0.26")  # third derivative of x in the dip, in m/s³
-SAID = "not decided without --recompute: the possible transits, the proof, the cross-checks (confirmation: none)"
+SAID = "checked only by --recompute: the possible transits, the proof, the cross-checks"
 
 
 # none is what a run finds first

@@ -38,7 +38,7 @@ def test_an_untouched_dataset_passes(dataset):
 
 def test_what_nothing_here_can_vouch_for_is_said_in_the_verdict(dataset, foucault):
     """The cross-checks and the proof of a dataset that is not in the index; of one that is, nothing is left to say."""
-    words = "not decided without --recompute: "
+    words = "checked only by --recompute: "
     status, out, _ = foucault("verify", dataset)
     assert (status, unwrapped(out)) == (0, f"{dataset}: ok {words}the cross-checks")
     assert foucault("verify", dataset, "--recompute")[:2] == (0, f"{dataset}: ok\n")
@@ -492,7 +492,7 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(tmp_pa
     note = unwrapped(out).removeprefix(ok)
     assert status == 0 and unwrapped(out).startswith(ok)
     assert note.startswith(
-        "not decided without --recompute: the motion (each row was checked by itself; "
+        "checked only by --recompute: the motion (each row was checked by itself; "
     )
     assert re.search(r"integrating it again would take about [0-9]+ s\)$", note)
     (row,) = json.loads(foucault("verify", folder, "--json")[1])["rows"]
@@ -509,7 +509,7 @@ def test_where_two_runs_do_not_decide_the_motion_finer_ones_follow(tmp_path):
     found = verify(folder)
     assert (found.problems, found.undecided) == (
         [],
-        ["not decided without --recompute: the cross-checks"],
+        ["checked only by --recompute: the cross-checks"],
     )
 
 
