@@ -92,7 +92,7 @@ def checked_path(field: str, path: object, expected: str, advice: str = "") -> P
 
 
 def check_whole(
-    field: str, number: object, least: int = 1, words: str = "a whole number from 1"
+    field: str, number: object, least: int = 1, words: str = "a whole number, 1 or more"
 ) -> None:
     """Raise InputError unless a number is whole and at least `least`, as `words` say."""
     if not _is_whole(number, least):

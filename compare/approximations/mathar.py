@@ -34,7 +34,7 @@ Item = int | str
 def derivatives(
     state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()
 ) -> State:
-    """Return the derivatives of x, y, vx, vy by (43) without the terms of items 2, 3 and 5.
+    """Return the derivatives of x, y, vx and vy by (43), without the terms of items 2, 3 and 5.
 
     With no item this is `reference.model.formulations.Plane.derivatives`, where powers of z are
     cancelled. It is written again on purpose, with every term multiplied by z⁴ as in the paper: the

@@ -108,7 +108,7 @@ def rest_in_metres(scene: Scene) -> Array:
     """Return the rest position in m, shape (3,).
 
     Raises:
-        UnreachableError: no rest position is singled out.
+        UnreachableError: there is no single rest position.
     """
     start = Start.of(scene.exact, _PREC)
     return np.array([float(part * start.k.length) for part in start.rest])

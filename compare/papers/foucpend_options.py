@@ -113,7 +113,7 @@ def _whole(switch: str, text: str, low: int) -> int:
     with suppress(ValueError):
         if (value := int(text)) >= low:
             return value
-    raise InputError(f"-{switch}", text, f"a whole number from {low}")
+    raise InputError(f"-{switch}", text, f"a whole number, {low} or more")
 
 
 def _scene(values: Mapping[str, str]) -> Scene:

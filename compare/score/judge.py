@@ -347,7 +347,7 @@ def _reach(x: Array, y: Array) -> float:
 
 
 def _rest(scene: Scene) -> tuple[float, float]:
-    """Return x and y of the rest position in m; (0, 0) if none is singled out."""
+    """Return x and y of the rest position in m; (0, 0) if there is no single one."""
     try:
         x, y, _ = rest_in_metres(scene)
     except UnreachableError:

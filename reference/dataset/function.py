@@ -94,7 +94,7 @@ def _check_form(record: FunctionRecord, text: str, data: bytes) -> None:
         ValueError: the first rule that is broken.
     """
     if record.text() != text:
-        raise ValueError("is not in the form in which this project writes it")
+        raise ValueError("is not in the format that this project writes")
     if tuple(record.bounds) != STATE:
         raise ValueError(f"bounds: must name {', '.join(STATE)}")
     components = POSITION[:2] if record.length_squared else POSITION

@@ -73,7 +73,7 @@ class PrintedTable(Framed):
         bounded = self._bounds if len(self) else self.columns
         if name not in bounded:
             raise KeyError(
-                f"there is no bound of {name!r}; there are {', '.join(['t', *self._bounds])}"
+                f"there is no bound for {name!r}; there are bounds for {', '.join(['t', *self._bounds])}"
             )
         return [Fraction(self._bounds[name])] * len(self) if len(self) else []
 

@@ -322,7 +322,7 @@ def check_gates(inputs: Any, words: tuple[str, ...]) -> None:
 
 
 def demand_rest_positions(balls: SceneBalls, words: tuple[str, ...]) -> None:
-    """Refuse gates whose rest position cannot be singled out (Lemma 13.3).
+    """Refuse gates if no single rest position is known (Lemma 13.3).
 
     Raises:
         InputError: it names the gate.

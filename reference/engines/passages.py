@@ -114,7 +114,8 @@ class _SectionSearch:
                 g = g[1:]
         if not g or max(map(abs, g)) <= noise:
             raise IntegrationError(
-                f"{self.word}: within the precision, the motion stays in this section.", _GRAZING
+                f"{self.word}: to working precision, the motion never leaves this section.",
+                _GRAZING,
             )
         places = Places(g, noise, self._bits, self.word)
         before = self._sign or places.sign(0)

@@ -76,7 +76,7 @@ class RowMotion:
         return value, rate
 
     def earlier(self, by: Array) -> Self:
-        """Return the motion a little earlier than at its times, n'' as it is."""
+        """Return the motion slightly before its times, with n'' unchanged."""
         n = subtract(self.n, scale(by, self.v))
         v = subtract(self.v, scale(by, self.a))
         return type(self)(n, v, self.a)

@@ -77,7 +77,7 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
         ctx: the context; θ is exact to its last few bits.
 
     Raises:
-        ValueError: none is singled out, as no force acts at the pivot, or as the rotation is so
+        ValueError: there is no single one: no force acts at the pivot, or the rotation is so
             fast that the one next to the plumb line is not stable.
     """
     if is_zero(k.pull[1]) and is_zero(k.centrifugal[2]):

@@ -181,7 +181,7 @@ class Angles:
         """Return the state of a bob off the vertical; `functions` needs atan2 and sqrt."""
         square = n[0] * n[0] + n[1] * n[1]
         if not square > 0:
-            raise ValueError("The formulation angles has no azimuth on the vertical")
+            raise ValueError("In the formulation angles the azimuth is undefined on the vertical")
         aside = functions.sqrt(square)
         return (
             functions.atan2(aside, -n[2]),

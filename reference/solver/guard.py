@@ -51,7 +51,7 @@ def guarded(solution: Solution, pilot: Pilot, report: Report | None = None) -> S
     for prec in _precisions(solution, pilot):
         if prec > _MOST_CHECK_PREC:
             reason: Exception = UnreachableError(
-                f"To find transits so close to a touch, a run would need {prec} bits."
+                f"To resolve transits so close to a double zero, a run would need {prec} bits."
             )
             break
         try:
@@ -172,7 +172,7 @@ def _zero_gap(word: str, zeros: Zeros[Table], found: Zeros[Table], prec: int) ->
         gap = _gap_of_the_next(candidates, t, bound, direction)
         if gap is None:
             raise IntegrationError(
-                f"heyoka does not find {name} {k} of the proof, at t = {t / 2**bits} s."
+                f"heyoka did not find {name} {k}, which the proof has at t = {t / 2**bits} s."
             )
         largest = max(largest, gap)
     return Fraction(largest, 2**bits)

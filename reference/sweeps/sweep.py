@@ -86,7 +86,7 @@ def sweep(
     if out is not None:
         folder = checked_path("out", out, "a folder")
     if workers is not None:
-        check_whole("workers", workers, words="a whole number from 1, or None for one a core")
+        check_whole("workers", workers, words="a whole number, 1 or more, or None for all cores")
     settings = Settings(
         want=want.split(",") if isinstance(want, str) else words_of(want),
         level=level,

@@ -167,7 +167,7 @@ class Pool:
                 process.stop()
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """Begin a call of a function that is defined at the top level of a module.
+        """Submit a call of a function that is defined at the top level of a module.
 
         Its future has the function's result, or raises the function's OSError; `WorkerDied`, also
         after any other error; or `CancelledError` if the pool ended it.

@@ -86,7 +86,7 @@ class TracedNumber:
 
     def __pow__(self, exponent: Any) -> Any:
         if not isinstance(exponent, int) or exponent < 1:
-            raise TracingError(f"got the exponent {exponent!r}, expected a whole number from 1")
+            raise TracingError(f"got the exponent {exponent!r}, expected a whole number, 1 or more")
         power = self
         for _ in range(exponent - 1):
             power = power * self

@@ -53,7 +53,7 @@ class SumsAudit:
         self.bytes += step.digits.nbytes
 
     def check(self) -> None:
-        """Raise WrongSumsError unless all that waits is right; of a wrong step (6.17) bounds the chance to pass."""
+        """Raise WrongSumsError unless every pending sum is right; (6.17) bounds the chance of a wrong one to pass."""
         waiting = self.waiting
         self.waiting = []
         self.bytes = 0

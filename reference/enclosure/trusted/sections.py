@@ -93,7 +93,7 @@ def rest_position(balls: SceneBalls) -> Vector:
         G = add(balls.c, times(-1, cross(balls.omega, cross(balls.omega, rest))))
         demand(
             dot(G, G) > 0,
-            "so fast a rotation singles out no rest position, which the gate goes through",
+            "the rotation is too fast for a single rest position, which a gate passes through",
         )
         rest = times(1 / dot(G, G).sqrt(), G)
     return rest
@@ -115,7 +115,7 @@ def vanishes_at_release(balls: SceneBalls, word: str) -> bool:
 
 
 class SectionOnStep(FormOnStep):
-    """A section's form on a step, by Lemma 13.1."""
+    """The function whose zeros are a section's passages, on one step (Lemma 13.1)."""
 
     short: ShortForms
 

@@ -280,7 +280,9 @@ def test_a_transit_that_heyoka_sees_elsewhere_is_named():
         transits[4] = replace(transits[4], t=replace(t, low=t.low + 1, high=t.high + 1))
         return with_transits(proved, transits)
 
-    with pytest.raises(IntegrationError, match="does not find transit 5 of the proof, at t = "):
+    with pytest.raises(
+        IntegrationError, match="did not find transit 5, which the proof has at t = "
+    ):
         solved_with(shift, make_scene(run=SHORT))
 
 
