@@ -121,7 +121,9 @@ def _entry_name(scene_id: str, problem: Scene) -> str:
 def _solved(problem: Scene, name: str, progress: Progress) -> Path:
     """Solve a problem and return the folder of its dataset, in the cache if that can keep it."""
     from reference import solve, write
+    from reference.solver.choice import need_heyoka
 
+    need_heyoka("score")
     if progress.announce is not None:
         progress.announce(f"{_why_solved(problem)}: solving it to {problem.run.digits} digits")
     solution = solve(problem, report=progress.report)

@@ -52,13 +52,13 @@ class InputError(FoucaultError):
 
 
 class NotInstalledError(InputError):
-    """A package is missing: the field that needs it, its purpose, and what pip has to install."""
+    """A package is missing: the field that needs it, its purpose, and the command that installs it."""
 
     def __init__(
-        self, field: str, purpose: str, package: str, requirement: str, instead: str = ""
+        self, field: str, purpose: str, package: str, command: str, instead: str = ""
     ) -> None:
         expected = f"the package {package}"
-        advice = f"Install it with pip install {requirement}{instead}."
+        advice = f"Install it with {command}{instead}."
         super().__init__(field, NOTHING, expected, advice)
         text = f"{plain(field)}: {purpose} needs {expected}, which is not installed. {advice}"
         self.args = (plain_lines(text),)

@@ -52,7 +52,7 @@ HOLDS = f"{ENCLOSURE}mutations.py::test_the_module_as_it_is_passes_every_check"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/enclosure/trusted: sections": f"{HOLDS}[sections]",
     "reference/enclosure/trusted: box": f"{HOLDS}[box]",
-    "reference/enclosure/trusted: derivatives": f"{HOLDS}[derivatives]",
+    "reference/enclosure/trusted: derivatives": f"{HOLDS}[derivatives] {ENCLOSURE}derivatives.py",
     "reference/enclosure/trusted: balls system defect radius tube six_columns": FORMULAS,
     "reference/enclosure/trusted: zeros": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
     "reference/enclosure/trusted: function": f"{ENCLOSURE}function.py",
@@ -65,7 +65,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
     "compare/score: errors": f"{SCORE}errors.py",
-    "compare/score: verdict judge": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING}",
+    "compare/score: verdict judge": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING} tests/compare/report/test_suite.py",
     "compare/score: remarks time_span": f"{SCORE}judge.py {NAMING}",
     "compare/score: document input_floor": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py",
     "compare/diagnosis: document since": f"{SCORE}verdict.py {SCORE}baseline.py",

@@ -80,6 +80,7 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
 _heyoka = partial(
     Method,
     setting="tolerance",
+    requires=("heyoka",),
     source="F. Biscani and D. Izzo, MNRAS 504 (2021) 2614; Jorba and Zou, Experimental Mathematics 14 (2005) 99",
     licence="MPL-2.0",
     formulations=("space", *(word for word in FORMULATIONS if word != "space")),

@@ -18,7 +18,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 from reference.numbers.table import Table
 from reference.status import Status
-from reference.system.imports import missing, switched_off
+from reference.system.imports import install_command, missing, switched_off
 
 from .library import Library
 from .rhs.problem import Problem
@@ -191,8 +191,8 @@ def available(method: Method) -> str | None:
     absent = missing(method.requires)
     if not absent:
         return None if method.native is None else method.native.missing
-    advice = f": pip install 'foucault-reference[{method.extra}]'" if method.extra else ""
-    return f"not installed ({', '.join(absent)}){advice}"
+    advice = install_command(absent[0], method.extra or "")
+    return f"not installed ({', '.join(absent)}): {advice}"
 
 
 def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any) -> RunOutcome:

@@ -24,6 +24,7 @@ from reference.errors import Described, did_you_mean, in_words
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 from reference.solver.doubles import TOLERANCE
+from reference.system.imports import install_command, missing
 
 from ..candidates.arrays import candidate_from, real_array
 from ..candidates.candidate import Candidate, checked_transits
@@ -52,6 +53,7 @@ from .verdict import Score
 
 # readings of the scene's numbers; auto: by the candidate's precision
 READINGS = ("auto", "decimal", "binary64")
+_NO_REASONS = "no reasons are looked for, because heyoka is not installed: {}"
 _ROUGHLY = 1e-3  # largest error of a cheap run, over the tolerance
 # reach of a candidate over that of the truth: below it the tolerance follows from the candidate's
 SMALL = 0.1
@@ -180,9 +182,18 @@ def judge_with(
     trial = _trial_of(_candidate_of(candidate, transits, scene), scene, options)
     score = _with_remarks(_score_of(trial, progress), trial)
     if options.explain and score.off_path and trial.candidate.positions and score.covered:
-        explanation = diagnose(trial.candidate, trial.problem, score.allowed_m)
-        score = replace(score, explanation=explanation)
+        score = _explained(score, trial)
     return score if baseline is None else _with_changes(score, baseline, trial)
+
+
+def _explained(score: Score, trial: _Trial) -> Score:
+    """Return a score with the reasons of its error, or with a note on what finding them needs."""
+    if missing(["heyoka"]):
+        return replace(
+            score, notes=(*score.notes, _NO_REASONS.format(install_command("heyoka", "")))
+        )
+    explanation = diagnose(trial.candidate, trial.problem, score.allowed_m)
+    return replace(score, explanation=explanation)
 
 
 @dataclass(frozen=True)

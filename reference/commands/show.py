@@ -176,11 +176,17 @@ def _check_installed(scene: Scene, options: _ShowOptions) -> None:
     """Refuse what was asked for and cannot be proved here, before anything is shown.
 
     Raises:
-        InputError: python-flint is not installed.
+        InputError: heyoka or python-flint is not installed.
     """
-    from ..solver.choice import need_flint
+    from ..solver.choice import need_flint, need_heyoka
     from ..solver.uncertain import need_proof
 
+    for asked, field in (
+        (options.equations, "--equations"),
+        (options.sensitivity, "--sensitivity"),
+    ):
+        if asked:
+            need_heyoka(field)
     if options.uncertain and widths_by_name(options.uncertain, scene):
         need_proof()
     if options.proved or (options.equations and scene.run.level == "enclosed"):

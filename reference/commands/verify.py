@@ -87,7 +87,10 @@ def _checked_dataset(folder: Path, recompute: bool, show: Show) -> _Check:
     """Check a golden dataset, and solve it again if asked to."""
     from ..dataset.verify import recompute as recomputed
     from ..dataset.verify import verify
+    from ..solver.choice import need_heyoka
 
+    if recompute:
+        need_heyoka("--recompute")
     outcome = verify(folder, show(folder.name))
     if not recompute or outcome.problems:
         return _Check(outcome.problems, outcome.undecided, outcome.foreign)

@@ -8,7 +8,6 @@ from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from ..engines.heyoka.system import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
@@ -88,7 +87,8 @@ def manifest_of(
         command=command(scene, name, _options(solution, name, tables)),
         files={},
         sections=sections,
-        **following(scene, run.formulation, run.number, grid),
+        equations=equations_of(scene, run.formulation, run.number),
+        **following(scene, grid),
     )
 
 
@@ -132,16 +132,22 @@ def _sections(solution: Solution, sheet: Sheet) -> SectionsRecord:
     return SectionsRecord(decimals=sheet.decimals, bounds=bounds, counts=counts, possible=possible)
 
 
-def following(scene: Scene, formulation: str, number: str, grid: Sheet | None) -> dict[str, Any]:
-    """Return the fields of a manifest that follow from scene, formulation, number and grid."""
+def equations_of(scene: Scene, formulation: str, number: str) -> Equations:
+    """Return the equations that heyoka compiles for a scene, and what it leaves out of them."""
+    from ..engines.heyoka.system import lines_and_left_out
+
     lines, left_out = lines_and_left_out(scene, formulation, number)
+    return Equations(formulation=formulation, lines=lines, left_out=left_out)
+
+
+def following(scene: Scene, grid: Sheet | None) -> dict[str, Any]:
+    """Return the fields of a manifest that follow from scene and grid."""
     up = _UP[scene.site.gravity_is]
     fields: dict[str, Any] = {
         "notes": flag_meanings(scene.flags),
         "scene": scene_inputs(scene),
         "frame": f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it",
         "units": _UNIT_OF,
-        "equations": Equations(formulation=formulation, lines=lines, left_out=left_out),
     }
     if grid is not None:
         fields["invariant"] = invariant_drift(scene, grid)

@@ -70,7 +70,7 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     if problems:
         return Verification(problems[:_MAX_PROBLEMS], foreign, [])
 
-    undecided = [*undecided, *_unconfirmed(files.manifest)]
+    undecided = [*undecided, *scene_check.unchecked(), *_unconfirmed(files.manifest)]
     if undecided:
         undecided = [f"checked only by --recompute: {', '.join(undecided)}"]
     return Verification([], foreign, undecided)

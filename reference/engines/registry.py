@@ -61,6 +61,9 @@ def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS, *, proof: bool
     The engine called `name` is taken if it is installed and can compute at this precision.
     Otherwise, or if `name` is "auto", it is the one with the least expected cost among the
     installed engines that can. With `proof` the cost of a proof of the run is added.
+
+    Raises:
+        InputError: none that can compute at this precision is installed.
     """
 
     def preference(engine: Engine) -> tuple[bool, float]:
@@ -70,6 +73,8 @@ def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS, *, proof: bool
         return name not in (engine.name, AUTO), cost_s
 
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
+    if not serving:
+        engines()["heyoka"].check_installed()  # it would serve any precision
     return min(serving, key=preference)
 
 

@@ -52,7 +52,9 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
     try:
         from pandas import DataFrame
     except ImportError:
-        raise NotInstalledError("to_pandas", "a DataFrame", "pandas", "pandas") from None
+        raise NotInstalledError(
+            "to_pandas", "a DataFrame", "pandas", "pip install pandas"
+        ) from None
     return DataFrame(columns)
 
 

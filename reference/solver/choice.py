@@ -85,6 +85,15 @@ def _first_published(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, en
     return published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
 
 
+def need_heyoka(field: str = "solve") -> None:
+    """Refuse to solve a scene where heyoka is not installed: no run would be checked.
+
+    Raises:
+        InputError: it is not.
+    """
+    needed("heyoka", "", field, "solving a scene")
+
+
 def need_flint() -> None:
     """Refuse the level enclosed where python-flint is not installed.
 

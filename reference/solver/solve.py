@@ -28,6 +28,7 @@ from .choice import (
     confirming_plan,
     expected_pilot_s,
     first_prec,
+    need_heyoka,
     pilot_for,
     published_plan,
     rounded_prec,
@@ -101,7 +102,12 @@ def solve(
 
 
 def _solved(request: SolveRequest) -> Solution:
-    """Solve a scene at its level."""
+    """Solve a scene at its level.
+
+    Raises:
+        InputError: heyoka is not installed.
+    """
+    need_heyoka()
     scene = request.scene
     level = scene.run.level
     if level == "enclosed":

@@ -27,6 +27,7 @@ from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Reading, Scene, checked_value, parse_scene
+from ..solver.choice import need_heyoka
 from ..system.imports import needed
 from .axes import WORD_FIELDS, AxisTable, combinations, rows_of_file
 from .parquet import (
@@ -92,6 +93,8 @@ class Settings:
         if self.level not in LEVELS:
             advice = f"There are {', '.join(LEVELS)}."
             raise unknown("--level", self.level, "a level of trust", LEVELS, advice)
+        if self.promotes:
+            need_heyoka("--level" if self.level != "computed" else "--digits")
         if self.level == "enclosed":
             needed("flint", "enclose", "--level", "the level enclosed")
         if self.digits is not None:
@@ -376,7 +379,11 @@ def _engine(name: str, scene: Scene, count: int) -> Batch:
 
 
 def _fastest(scene: Scene, count: int) -> Batch:
-    """Return the engine that is expected to finish first, loading and compiling included."""
+    """Return the engine that is expected to finish first, loading and compiling included.
+
+    Raises:
+        InputError: none that can solve the scene is installed.
+    """
     sections = bool(scene.run.sections)
 
     def cost_s(engine: Batch) -> float:
@@ -387,4 +394,6 @@ def _fastest(scene: Scene, count: int) -> Batch:
         for engine in batches().values()
         if engine.installed and (engine.drag or not scene.exact.drag)
     ]
+    if not serving:
+        batches()["heyoka"].check_installed()  # it would serve any scene
     return min(serving, key=cost_s)

@@ -16,6 +16,8 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from ..errors import InputError, NotInstalledError, no_attribute, unknown
 
 _PACKAGES = {"flint": "python-flint"}  # that are not named as their modules
+# a dependency that pip has for Linux only
+_BY_CONDA = {"heyoka": "conda install -c conda-forge heyoka.py"}
 
 
 def lazy(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
@@ -99,15 +101,26 @@ def missing(modules: Iterable[str]) -> list[str]:
 
 
 def needed(module: str, extra: str, field: str, purpose: str, instead: str = "") -> None:
-    """Refuse work for which a module is not installed, and say which extra installs it.
+    """Refuse work for which a module is not installed, and say how to install it.
+
+    Args:
+        module: its name.
+        extra: the extra that has it; "" for a dependency of the base install.
+        field: what needs it.
+        purpose: what it is needed for.
+        instead: what else the user can do.
 
     Raises:
         InputError: it is not.
     """
     if missing([module]):
         package = _PACKAGES.get(module, module)
-        requirement = f"'foucault-reference[{extra}]'"
-        raise NotInstalledError(field, purpose, package, requirement, instead)
+        raise NotInstalledError(field, purpose, package, install_command(module, extra), instead)
+
+
+def install_command(module: str, extra: str) -> str:
+    """Return the command that installs a module, which an extra has; "" for the base install."""
+    return _BY_CONDA.get(module, f"pip install 'foucault-reference[{extra}]'")
 
 
 def switched_off(modules: Iterable[str]) -> str | None:
@@ -155,5 +168,6 @@ class OptionalEngine:
             raise InputError(
                 "--engine", self.name, f"{variable} not to be set", f"Unset it. {without}."
             )
+        instead = f". {without}" if self.extra else ""
         for module in self.requires:
-            needed(module, self.extra, "--engine", f"the engine {self.name}", f". {without}")
+            needed(module, self.extra, "--engine", f"the engine {self.name}", instead)

@@ -9,12 +9,12 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 from mpmath.libmp import from_rational
 
 from ...errors import IntegrationError
 from ...numbers.precision import DOUBLE, LONG_DOUBLE, Array, NumberType, to_fraction
+from .library import hy
 from .system import keep_on_disk
 
 # Optimised code takes 0.1 to 1 s longer to compile. In hardware numbers a step is then 1 to 10 µs

@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-import heyoka as hy
 import numpy as np
 
 from ...model.constants import Constants
@@ -29,6 +28,7 @@ from ..row_zeros import (
     describe_transits,
 )
 from .conversions import Numbers
+from .library import hy
 from .system import as_pairs, rates
 
 _PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 
 from ...model.constants import Constants
@@ -20,6 +19,7 @@ from ...numbers.columns import RUN
 from ...numbers.precision import Array, NumberType
 from ...numbers.table import Table
 from .conversions import Numbers
+from .library import hy
 from .propagator import AutonomousSystem, Propagator
 from .system import rates
 

@@ -9,11 +9,10 @@ from fractions import Fraction
 from numbers import Real
 from typing import Any
 
-import heyoka as hy
-
 from ...errors import InputError
 from ...numbers.precision import NumberType
 from .conversions import Numbers
+from .library import hy
 from .system import as_pairs
 
 

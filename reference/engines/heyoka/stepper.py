@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-import heyoka as hy
 import numpy as np
 
 from ...errors import IntegrationError
@@ -18,6 +17,7 @@ from ...model.start import Start
 from ...numbers.precision import NumberType
 from ...system.channel import ACTIVITY
 from ..plan import Pace, Report
+from .library import hy
 from .model import RoundedModel
 from .system import system_of
 

@@ -12,8 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import heyoka as hy
-
 from ...errors import Described, InputError, counted
 from ...model.algebra import minus, product
 from ...model.carried import constant_variables
@@ -21,6 +19,7 @@ from ...model.constants import Constants
 from ...model.formulations import FORMULATIONS, Formulation, Lagrangian
 from ...model.start import Start, xdot_vanishes
 from ...numbers.precision import DOUBLE, LONG_DOUBLE, NumberType
+from .library import hy
 
 if TYPE_CHECKING:
     from ...scenes.scene import Scene

@@ -131,6 +131,7 @@ def narrower(text):
 
 CHANGES = {
     "a low end": ("grid.csv", lambda row: row.update(x_low=narrower(row["x_low"])) or row),
+    "a high end that is no decimal": ("grid.csv", lambda row: row.update(x_high="1e3") or row),
     "a time": ("grid.csv", lambda row: row.update(t=narrower(row["t"])) or row),
     "a transit": ("transits.csv", lambda row: row.update(t_low=narrower(row["t_low"])) or row),
     "a direction": (
