@@ -43,6 +43,7 @@ LIMITS, FILES, BITS = (
 )
 NUMBERS, FUNCTION = "tests/reference/numbers/test_", f"{DATASET}function.py"
 VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
+SUITE = "tests/compare/report/test_suite.py"
 TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
 PASSAGES = "tests/reference/engines/test_passages.py"
 ENCLOSURE = "tests/reference/enclosure/test_"
@@ -65,7 +66,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py {SCORE}verdict.py {SCORE}judge.py",
     "compare/score: errors": f"{SCORE}errors.py",
-    "compare/score: verdict judge": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING} tests/compare/report/test_suite.py",
+    "compare/score: verdict judge": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING} {SUITE}",
     "compare/score: remarks time_span": f"{SCORE}judge.py {NAMING}",
     "compare/score: document input_floor": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py",
     "compare/diagnosis: document since": f"{SCORE}verdict.py {SCORE}baseline.py",
