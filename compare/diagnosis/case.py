@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..candidates.candidate import Deviation
 from .advice import advice
 from .phasors import ComplexArray, sinc
 from .programs import NAMES, Program, SphericalPendulum
-from .thresholds import FINEST, RIVAL, ROUNDED
+from .thresholds import FINEST, ROUNDED
 
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
@@ -110,19 +111,22 @@ class Explanation:
         causes: in the order gravity, model, inputs, release, frame, clock, integrator.
         model: the simplification that the file is exact within, if it is.
         corrected_m: the largest error in m that is left after all of these.
+        explains: whether that is within the tolerance, or the rounding of the file.
         slip: where none is known, which part of the force is off: a sentence.
         explained: share of the root mean square error that is gone with them.
         score: decades, as in `readings`: of two explanations the lower one is the better.
         allowed_m: distance in m that counts as agreement.
         next_step: what to do where no cause is certain.
-        price: of its conventions and causes.
+        price: of its causes.
         rest_m: the root mean square in m that is left.
+        reading: the `CauseReading` of its causes, whose numbers can be fitted again; None if it has none.
     """
 
     conventions: tuple[Deviation, ...] = ()
     causes: tuple[Deviation, ...] = ()
     model: NamedModel | None = None
     corrected_m: float = math.nan
+    explains: bool = False
     slip: str = ""
     explained: float = 0.0
     score: float = 0.0
@@ -130,6 +134,7 @@ class Explanation:
     next_step: str = ""
     price: int = 0
     rest_m: float = math.inf
+    reading: Any = field(default=None, repr=False, compare=False)
 
     @property
     def known(self) -> list[Deviation]:
@@ -271,47 +276,39 @@ class FileCase:
         )
         return replace(self, rows=rows, truth=self.truth[:count])
 
-    def tested(self, causes: tuple[Deviation, ...], residuals: Array, price: int) -> Explanation:
-        """Return the explanation that some causes make up; the one without causes where they spoil a column.
-
-        A cause that leaves a column worse than the file has it is refuted by the file.
-
-        Args:
-            causes: as in `Explanation`.
-            residuals: what they leave in m, shape (rows, 2 or 3).
-            price: as of `explanation`.
-        """
-        errors = self.rows.positions - self.truth
-        own = np.maximum(np.abs(errors).max(axis=0), self.resolution)
-        if causes and (np.abs(residuals).max(axis=0) > RIVAL * own).any():
-            return self.explanation((), largest(errors), self.error, 0)
-        return self.explanation(causes, largest(residuals), rms(residuals), price)
+    def in_the_plane(self) -> FileCase:
+        """Return the case of x and y alone."""
+        positions = np.ascontiguousarray(self.rows.plane)
+        rows = replace(self.rows, positions=positions, cord=None)
+        return replace(self, rows=rows, truth=self.truth[:, :2])
 
     def explanation(
-        self, causes: tuple[Deviation, ...], corrected_m: float, rest: float, price: int
+        self, causes: tuple[Deviation, ...], residuals: Array, price: int
     ) -> Explanation:
         """Return the explanation that some causes make up.
 
         Args:
             causes: as in `Explanation`.
-            corrected_m: the largest error in m that they leave.
-            rest: the root mean square in m that they leave.
+            residuals: what they leave in m, shape (rows, 2 or 3).
             price: of the causes; each convention costs one.
         """
+        corrected_m = largest(residuals)
+        rest_m = rms(residuals)
+        explains = corrected_m <= self.enough
         # what is within the tolerance speaks against no explanation
-        left = rest if corrected_m > self.enough else 0.0
-        size = math.log10(max(left / self.allowed_m, 1e-2))
+        counted_m = 0.0 if explains else rest_m
+        size = math.log10(max(counted_m / self.allowed_m, 1e-2))
         score = size + CONVENTION * (len(self.rows.conventions) + price)
-        explained = 1 - rest / self.error if self.error else 0.0
         return Explanation(
             conventions=self.rows.conventions,
             causes=causes,
             corrected_m=corrected_m,
-            explained=explained,
+            explains=explains,
+            explained=1 - rest_m / self.error if self.error else 0.0,
             score=score,
             allowed_m=self.allowed_m,
             price=price,
-            rest_m=max(rest, self.resolution),
+            rest_m=max(rest_m, self.resolution),
         )
 
     def pendulum_of(self, program: Program) -> tuple[SphericalPendulum, Array]:

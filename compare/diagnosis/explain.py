@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from reference import FoucaultError, Scene
 from reference.engines.trajectory import Variants
+from reference.model.constants import constants_in_double
 from reference.numbers.precision import Array
 
-from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import Deviation
-from .case import (
-    AS_IF,
-    HARMLESS,
-    Explanation,
-    FileCase,
-    FileRows,
-    NamedModel,
-    largest,
-)
-from .claims import either_of, explanation_of, nothing, with_rival_step
+from .approximated import of_approximation
+from .case import AS_IF, Explanation, FileCase, FileRows
+from .claims import by_need, explanation_of, likelier, nothing, with_rival_step
 from .conventions import (
     ROUGHLY,
     axes,
@@ -34,26 +28,32 @@ from .conventions import (
     shifted,
     unit_of_time,
 )
-from .fitted import readings_of
+from .fitted import polished, readings_of
 from .formulas import of_formula
+from .hypotheses import Claim
 from .observed import of_observation
 from .programs import Program, SphericalPendulum
-from .slips import falls, growth, slip
+from .slips import falls, growth, of_slip
 from .stepped import of_loops, of_steps
-from .thresholds import NEEDED, RIVAL
 
-RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
+RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))
+# conventions that are no facts of the printed numbers: what is left without them decides
+QUESTIONED = RENAMED | {
+    "unit_of_length",
+    "angles",
+    "unit_of_time",
+    "clock_offset",
+    "rows_reversed",
+    "rows_late",
+    "rows_early",
+}
 FAST = 20.0  # times faster than the scene: nothing is run
 LEFT_OUT = ("z_constant", "off_the_sphere")  # heights that no explanation is asked for
 MOST_ROWS = 20_000  # that are looked at: the first half of them, and as many evenly spaced
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 ROWS_A_SWING = 20  # that show what an integrator does
 MAPPED = 4000  # rows of which all are compared with maps of columns
-LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
-OF_PAPERS = 2  # price of an approximation: a model, and what it is about
 SIMPLE = 2  # price of a map of columns beside which no steps are tried
-CLOSELY = 0.01  # of the error that an approximation may leave
-PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
 
 
 def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
@@ -74,8 +74,9 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
     try:
         with np.errstate(all="ignore"):
             problem = KnownScene.of(scene)
-            found = _explained(times, columns, problem, allowed_m)
-            return replace(found, next_step=_next_step(times, problem.frequency))
+            found = _explained(_File(times, columns, problem, allowed_m))
+            next_step = _next_step(times, problem.frequency)
+            return replace(found, reading=None, next_step=next_step)
     except (
         FoucaultError,
         ArithmeticError,
@@ -126,21 +127,27 @@ class KnownScene:
         return digits(FileRows(times, positions, 0.0))
 
     def rows(
-        self, times: Array, columns: dict[str, Array], rename: bool = True, late: bool = True
+        self, times: Array, columns: dict[str, Array], without: Collection[str] = ()
     ) -> FileRows:
         """Return the rows of a file in the scene's conventions.
 
         Args:
             times: as in the file.
             columns: x, y and perhaps z as in the file.
-            rename: whether the horizontal axes may have each other's names, or point the other way.
-            late: whether the clock may be off.
+            without: words of conventions that the file is taken not to have.
         """
-        start, length, frequency = self.start, self.right.length, self.frequency
-        rows = heights(self.printed(times, columns), length)
-        rows = clock(axes(rows, start, length, rename), start)
-        rows = rounded_clock(unit_of_time(rows, frequency, length), frequency)
-        return rows if rows.starts or not late else shifted(rows, start, frequency, length)
+        rows = heights(self.printed(times, columns), self.right.length)
+        if {"unit_of_length", "angles"}.isdisjoint(without):
+            rename = RENAMED.isdisjoint(without)
+            rows = axes(rows, self.start, self.right.length, rename)
+        if {"rows_reversed", "clock_offset"}.isdisjoint(without):
+            rows = clock(rows, self.start)
+        if "unit_of_time" not in without:
+            rows = unit_of_time(rows, self.frequency, self.right.length)
+        rows = rounded_clock(rows, self.frequency)
+        if rows.starts or not {"rows_late", "rows_early"}.isdisjoint(without):
+            return rows
+        return shifted(rows, self.start, self.frequency, self.right.length)
 
     def case(self, rows: FileRows, allowed_m: float, most: int = 0) -> FileCase:
         """Return what is to be explained of rows, of which some are taken if they are more than `most`."""
@@ -163,71 +170,120 @@ class KnownScene:
         return FileCase(rows, truth, right, pendulum, frequency, allowed_m, intervals)
 
 
-def _explained(
-    times: Array, columns: dict[str, Array], problem: KnownScene, allowed_m: float
-) -> Explanation:
-    scene = problem.scene
-    rows = problem.rows(times, columns)
-    case = problem.case(rows, allowed_m)
+@dataclass(frozen=True)
+class _File:
+    """A file as it is printed, and what it should show.
+
+    Attributes:
+        times: in s.
+        columns: x, y and perhaps z.
+        problem: the scene.
+        allowed_m: distance in m that counts as agreement.
+    """
+
+    times: Array
+    columns: dict[str, Array]
+    problem: KnownScene
+    allowed_m: float
+
+    def rows(self, without: Collection[str] = ()) -> FileRows:
+        """Return the rows in the scene's conventions, without those that the file is taken not to have."""
+        return self.problem.rows(self.times, self.columns, without)
+
+    def case(self, rows: FileRows, most: int = 0) -> FileCase:
+        """Return what is to be explained of rows."""
+        return self.problem.case(rows, self.allowed_m, most)
+
+    def explained(self, rows: FileRows) -> Explanation:
+        """Return the first good explanation of rows."""
+        return first_good_explanation(self.case(rows), self.problem.scene)
+
+    def need_of(self, convention: Deviation, explanation: Explanation) -> float:
+        """Return how many times as much an explanation leaves without a convention, its numbers fitted again."""
+        case = self.case(self.rows({convention.id}))
+        left = case.rows.positions - case.truth
+        if explanation.reading is not None:
+            left = case.left(polished(case, explanation.reading).program)
+        return Claim(case, left).rest / explanation.rest_m
+
+
+def _explained(file: _File, without: frozenset[str] = frozenset()) -> Explanation:
+    """Return the explanation of a file, without conventions that it is taken not to have."""
+    rows = file.rows(without)
+    by_columns = _explained_by_columns(file, rows)
+    if by_columns is not None:
+        return by_columns
+    best, rows = _with_best_conventions(file, rows)
+
+    conventions = []
+    doubtful = []
+    for convention in best.conventions:
+        said: Deviation | None = convention
+        if convention.id in QUESTIONED:
+            said = by_need(convention, file.need_of(convention, best))
+        if said is None and convention.id not in without:
+            return _explained(file, without | {convention.id})
+        if said is convention:
+            conventions.append(convention)
+        elif said is not None:
+            doubtful.append(said)
+    best = replace(best, conventions=tuple(conventions), causes=(*best.causes, *doubtful))
+    return _with_slip(file, rows, best)
+
+
+def _explained_by_columns(file: _File, rows: FileRows) -> Explanation | None:
+    """Return the explanation by columns of a right program that are printed otherwise, or by a likelier program.
+
+    None if there are none such.
+    """
+    case = file.case(rows)
     heights_left_out = any(part.id in LEFT_OUT for part in rows.conventions)
-    if case.error > case.floor or heights_left_out:
-        observed = of_observation(problem.case(problem.printed(times, columns), allowed_m, MAPPED))
-        if observed is not None and observed.price <= SIMPLE:
-            return likelier(observed, explanation_of(case, readings_of(case))[0])
-        if observed is not None:
-            return likelier(observed, first_good_explanation(case, scene))
-    best = first_good_explanation(case, scene)
-    alternatives = (
-        list(other_conventions(rows, problem.start)) if best.corrected_m > allowed_m else []
-    )
+    if case.error <= case.floor and not heights_left_out:
+        return None
+    printed = file.problem.printed(file.times, file.columns)
+    observed = of_observation(file.case(printed, MAPPED))
+    if observed is None:
+        return None
+    if observed.price <= SIMPLE:
+        named, _ = explanation_of(case, readings_of(case))
+        return likelier(observed, named)
+    return likelier(observed, first_good_explanation(case, file.problem.scene))
+
+
+def _with_best_conventions(file: _File, rows: FileRows) -> tuple[Explanation, FileRows]:
+    """Return the best explanation of a file, and its rows in the conventions that it has."""
+    best = file.explained(rows)
+    alternatives: list[FileRows] = []
+    if best.corrected_m > file.allowed_m:
+        alternatives += other_conventions(rows, file.problem.start)
     if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names
-        alternatives.append(problem.rows(times, columns, rename=False))
+        alternatives.append(file.rows(RENAMED))
     for alternative in alternatives:
-        explanation = first_good_explanation(problem.case(alternative, allowed_m), scene)
-        if explanation.corrected_m <= allowed_m and not any(
-            _is_mirrored(cause) for cause in explanation.causes
-        ):
-            best, rows = min(
-                (best, rows), (explanation, alternative), key=lambda pair: pair[0].score
-            )
-    shifts = [
-        convention.size_m
-        for convention in best.conventions
-        if convention.id in ("rows_early", "rows_late")
-    ]
-    # what is left may look like it
-    if shifts and not best.known and shifts[0] < RIVAL * best.corrected_m:
-        rows = problem.rows(times, columns, late=False)
-        best = first_good_explanation(problem.case(rows, allowed_m), scene)
+        explanation = file.explained(alternative)
+        mirrored = any(map(_is_mirrored, explanation.causes))
+        agrees = explanation.corrected_m <= file.allowed_m
+        if agrees and not mirrored and explanation.score < best.score:
+            best = explanation
+            rows = alternative
+    return best, rows
+
+
+def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:
+    """Return an explanation with the slip that explains what it leaves, or with what else the rows show."""
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
-    unknown = simple and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
-    if not best.slip and (
-        unknown or any(cause.id.endswith("integrator_loose") for cause in best.causes)
-    ):
-        wrong_term = slip(rows, scene)
-        if wrong_term:  # one term of a formula, as no integrator changes it
-            return Explanation(best.conventions, slip=wrong_term)
-        if not best.known:
-            return replace(best, slip=falls(rows, problem.right) or growth(rows))
-    return best
-
-
-def likelier(observed: Explanation, program: Explanation) -> Explanation:
-    """Return the likelier one of an explanation of another kind, which explains the rows, and of one by a program.
-
-    Another kind is columns that are printed otherwise, or an approximation of the source papers.
-    """
-    if not program.causes or program.corrected_m > program.allowed_m:
-        return observed
-    cheap, dear = sorted((observed, program), key=lambda explanation: explanation.price)
-    if cheap.price < dear.price:
-        return dear if NEEDED * dear.rest_m < cheap.rest_m else cheap
-    if RIVAL * observed.rest_m < program.rest_m:
-        return observed
-    if RIVAL * program.rest_m < observed.rest_m:
-        return program
-    return either_of(program, observed)
+    unknown = simple and best.corrected_m > max(file.allowed_m, 1.5 * rows.noise)
+    is_loose = any(cause.id.endswith("integrator_loose") for cause in best.causes)
+    if best.slip or not (unknown or is_loose):
+        return best
+    # one term of a formula, as no integrator changes it
+    constants = constants_in_double(file.problem.scene.exact)
+    slipped = of_slip(file.case(rows), rows, constants, best.rest_m)
+    if slipped is not None:
+        return replace(slipped, conventions=best.conventions)
+    if best.known:
+        return best
+    return replace(best, slip=falls(rows, file.problem.right) or growth(rows))
 
 
 def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
@@ -236,67 +292,24 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
         return nothing(case)
     named, best = explanation_of(case, readings_of(case))
     if best is None or not named.causes:
-        other = of_steps(case, None) or of_formula(case) or _of_approximation(case, scene, None)
+        other = of_steps(case, None) or of_formula(case) or of_approximation(case, scene)
         return other or named
     program = best.reading.program
     # on the sphere what a step does is known roughly; to know it better, the step is taken
     # and in a linear model it is known exactly, if it is a method that has a name
     roughly = program.method is not None and (program.kind == "sphere" or not best.is_exact)
-    if roughly or named.corrected_m > case.enough:
+    if roughly or not named.explains:
         stepped = of_steps(case, best.reading)
         if stepped is not None and stepped.rest_m <= named.rest_m:
             return stepped
     elif program.method is not None:
         loop = of_loops(case)
         if loop is not None:
-            named = with_rival_step(named, loop, case)
-    if named.corrected_m > case.enough:
-        return _of_approximation(case, scene, named) or named
-    certain = all(cause.stage != AS_IF for cause in named.causes)
-    simple = None if certain else _of_approximation(case, scene, None)
-    if simple is not None and simple.corrected_m > case.enough:
+            named = with_rival_step(named, loop)
+    if named.explains and all(cause.stage != AS_IF for cause in named.causes):
         return named
-    return named if simple is None else likelier(simple, named)
-
-
-def _of_approximation(
-    case: FileCase, scene: Scene, named: Explanation | None
-) -> Explanation | None:
-    """Return the approximation of the source papers that leaves next to nothing, of equal ones the first.
-
-    None if there is none, or causes explain the rows as well.
-    """
-    rows, truth = case.rows, case.truth
-    count = rows.positions.shape[1]
-    if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
-        return None
-    best: tuple[Deviation, NamedModel, Array] | None = None
-    least = max(
-        CLOSELY * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5
-    )
-    for word, motion in APPROXIMATIONS.items():
-        if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
-            continue
-        positions = motion.trajectory(scene, rows.times)[:, :count]
-        left = rows.positions - positions
-        rest = float(np.linalg.norm(left))
-        if rest < (least if best is None else least / 2):
-            least, costs = rest, largest(positions - truth)
-            text = f"solves {motion.title} ({motion.where}) instead of the full equations"
-            best = (
-                Deviation(word, text, costs, "model"),
-                NamedModel(word, motion.title, largest(left), costs),
-                left,
-            )
-    if best is None or (named is not None and best[1].exact_to_m > PLAINLY * named.corrected_m):
-        return None
-    cause, model, left = best
-    corrected = model.exact_to_m
-    exact = corrected <= case.enough and all(
-        convention.id in HARMLESS for convention in rows.conventions
-    )
-    explanation = case.tested((cause,), left, OF_PAPERS)
-    return replace(explanation, model=model) if exact and explanation.causes else explanation
+    approximation = of_approximation(case, scene)
+    return named if approximation is None else likelier(approximation, named)
 
 
 def _is_mirrored(cause: Deviation) -> bool:

@@ -21,13 +21,14 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
+from ..candidates.candidate import Deviation
 from ..observed.least_squares import gauss_newton, solved
 from .case import Explanation, FileCase, FileRows
-from .claims import explanation_of
+from .claims import explanation_of, tested
 from .families import windows
 from .fitted import readings_of
+from .hypotheses import Claim
 from .programs import Program
-from .thresholds import NEEDED
 
 _PRODUCTS = (
     "cos ωt cos βt",
@@ -82,13 +83,15 @@ class _Formula:
         omega: rate of the swing in rad/s.
         beta: rate of the plane in rad/s.
         coefficients: of x and y in m, in the order of `_PRODUCTS`, shape (5, 2).
-        rest: root mean square of the residuals in m.
     """
 
     omega: float
     beta: float
     coefficients: Array
-    rest: float
+
+    def residuals(self, rows: FileRows) -> Array:
+        """Return what it leaves of x and y of some rows in m, shape (rows, 2)."""
+        return rows.plane - _basis(rows.times, self.omega, self.beta) @ self.coefficients
 
     @property
     def mirrored(self) -> _Formula:
@@ -121,43 +124,81 @@ class _Formula:
         return slips
 
 
+@dataclass(frozen=True, eq=False)
+class _FormulaClaim(Claim):
+    """The claim that rows follow a closed formula.
+
+    Attributes:
+        formula: fitted to all rows.
+    """
+
+    formula: _Formula
+
+    @property
+    def free_numbers(self) -> int:
+        """The two rates and all coefficients."""
+        return 2 + self.formula.coefficients.size
+
+    def foreseen(self, count: int) -> Array:
+        """Return what the formula that is fitted to the first `count` rows leaves in m."""
+        formula = _fit_formula(self.case.part(count).rows, self.case.right)
+        if formula is None:
+            return np.full_like(self.left, np.inf)
+        return formula.residuals(self.case.rows)
+
+
 def of_formula(case: FileCase) -> Explanation | None:
     """Return the explanation of rows that follow a closed formula with a slip.
 
     None if they do not, or with too many slips.
     """
-    formula = _fit_formula(case.rows, case.right)
-    if formula is None or formula.rest > NEEDED * case.resolution:
+    flat = case.in_the_plane()
+    formula = _fit_formula(flat.rows, flat.right)
+    if formula is None:
         return None
-    size = float(np.hypot(case.right.x, case.right.y))
-    same = max(_SAME * size, 10 * case.rows.noise)
+    claim = _FormulaClaim(flat, formula.residuals(flat.rows), formula)
+    # a formula leaves rounding
+    if not claim.is_exact:
+        return None
+    size = float(np.hypot(flat.right.x, flat.right.y))
+    same = max(_SAME * size, 10 * flat.rows.noise)
     best: Explanation | None = None
     fewest = _MOST + 1
     for signed in (formula, formula.mirrored):
         for released in _RELEASES:
-            slips = signed.slips(case.right, released, same)
-            if not 0 < len(slips) <= _MOST:
+            slips = signed.slips(flat.right, released, same)
+            if not 0 < len(slips) < fewest:
                 continue
-            explanation = _explanation_with(case, signed, slips)
-            if explanation is not None and len(slips) < fewest:
-                text = "; ".join(slip.sentence(size) for slip in slips)
-                slipped = f"It follows a closed formula with a slip: {text}."
-                best = replace(explanation, slip=slipped)
+            explanation = _explanation_with(flat, signed, slips)
+            slip = _sentence_on(claim, slips, size)
+            if explanation is not None and slip:
+                best = replace(explanation, slip=slip)
                 fewest = len(slips)
     return best
+
+
+def _sentence_on(claim: Claim, slips: list[_Slip], size: float) -> str:
+    """Return the sentence on slips that pass the tests of a claim; empty if they do not.
+
+    `size` in m is that of the motion.
+    """
+    text = "; ".join(slip.sentence(size) for slip in slips)
+    proposed = Deviation("slip", f"follows a closed formula with a slip: {text}", stage="model")
+    slip = tested(claim, proposed, claim.case.error)
+    return f"It {slip.text}." if slip is proposed else ""
 
 
 def _explanation_with(case: FileCase, formula: _Formula, slips: list[_Slip]) -> Explanation | None:
     """Return the explanation of rows with their slips corrected; None unless all is certain."""
     basis = _basis(case.rows.times, formula.omega, formula.beta)
-    positions = case.rows.plane.copy()
+    positions = case.rows.positions.copy()
     for slip in slips:
         positions[:, slip.column] += (slip.right - slip.value) * basis[:, slip.product]
-    rows = replace(case.rows, positions=positions, cord=None)
-    corrected = replace(case, rows=rows, truth=case.truth[:, :2])
+    rows = replace(case.rows, positions=positions)
+    corrected = replace(case, rows=rows)
     explanation, _ = explanation_of(corrected, readings_of(corrected, stepped=True))
     certain = explanation.causes and len(explanation.known) == len(explanation.causes)
-    return explanation if certain and explanation.corrected_m <= case.enough else None
+    return explanation if certain and explanation.explains else None
 
 
 def _fit_formula(rows: FileRows, right: Program) -> _Formula | None:
@@ -181,7 +222,7 @@ def _fit_formula(rows: FileRows, right: Program) -> _Formula | None:
             return None
     omega, beta = rates.tolist()
     coefficients = solved(_basis(times, omega, beta), plane, _FLAT)
-    return _Formula(omega, beta, coefficients, norm_m / math.sqrt(len(times)))
+    return _Formula(omega, beta, coefficients)
 
 
 def _basis(times: Array, omega: float, beta: float) -> Array:

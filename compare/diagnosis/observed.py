@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,11 +18,12 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import solved
-from .case import AS_IF, EITHER, Explanation, FileCase, largest, rms
+from .case import Explanation, FileCase, largest, rms
 from .causes import shortest_decimal
-from .claims import has_few_digits
+from .claims import Alternative, hedged, one_of, tested
+from .hypotheses import Claim, has_few_digits
 from .phasors import ComplexArray
-from .thresholds import ALTERNATIVES, RIVAL, ROWS_A_NUMBER
+from .thresholds import ALTERNATIVES, RIVAL
 
 _LATE_ROWS = (1, -1, 2, -2)  # by which a column may be late
 _PRINTED_DIGITS = 10  # of a fitted number at most
@@ -36,19 +37,51 @@ class _ColumnMap:
         id: a stable word.
         text: the end of the sentence "Your file …".
         columns: indices of the columns that it makes.
-        positions: these columns in m, shape (rows, columns).
+        made: `made(count)` returns these columns in m, shape (rows, columns), its numbers fitted to
+            the first `count` rows.
         price: one, and one more for each number that nobody typed.
     """
 
     id: str
     text: str
     columns: tuple[int, ...]
-    positions: Array
+    made: Callable[[int], Array]
     price: int = 1
 
-    def residuals(self, case: FileCase) -> Array:
-        """Return the file's columns less its own in m, shape (rows, columns)."""
-        return np.asarray(case.rows.positions[:, self.columns] - self.positions)
+    def residuals(self, case: FileCase, count: int | None = None) -> Array:
+        """Return the file's columns less its own in m, its numbers fitted to `count` rows, or to all."""
+        positions = case.rows.positions[:, self.columns]
+        return np.asarray(positions - self.made(len(positions) if count is None else count))
+
+
+@dataclass(frozen=True, eq=False)
+class _MapClaim(Claim):
+    """The claim that a map made some columns; the case has these alone.
+
+    Attributes:
+        of: the whole file.
+        map: of the truth.
+    """
+
+    of: FileCase
+    map: _ColumnMap
+
+    @classmethod
+    def about(cls, of: FileCase, column_map: _ColumnMap) -> _MapClaim:
+        """Return the claim about a file."""
+        columns = list(column_map.columns)
+        rows = replace(of.rows, positions=of.rows.positions[:, columns])
+        case = replace(of, rows=rows, truth=of.truth[:, columns])
+        return cls(case, column_map.residuals(of), of, column_map)
+
+    @property
+    def free_numbers(self) -> int:
+        """Its numbers that nobody typed, and which map it is."""
+        return self.map.price
+
+    def foreseen(self, count: int) -> Array:
+        """Return what it leaves in m if its numbers are fitted to the first `count` rows."""
+        return self.map.residuals(self.of, count)
 
 
 @dataclass(frozen=True)
@@ -106,46 +139,65 @@ class _Column:
         yield from self._constant()
         yield from self._copied()
         text = f"prints −{self.name} in its column of {self.name}"
-        yield self._mapped("mirrored", text, -self.true)
+        yield self._mapped("mirrored", text, _always(-self.true))
         yield from self._scaled()
         yield self._moved()
         yield from self._late()
 
-    def _mapped(self, word: str, text: str, values: Array, price: int = 1) -> _ColumnMap:
-        return _ColumnMap(f"column_{word}", text, (self.index,), values.reshape(-1, 1), price)
+    def _mapped(
+        self, word: str, text: str, made: Callable[[int], Array], price: int = 1
+    ) -> _ColumnMap:
+        def column_of(count: int) -> Array:
+            return made(count).reshape(-1, 1)
+
+        return _ColumnMap(f"column_{word}", text, (self.index,), column_of, price)
 
     def _constant(self) -> Iterator[_ColumnMap]:
         if np.ptp(self.printed) <= self.case.resolution:
+
+            def made(count: int) -> Array:
+                return np.full_like(self.printed, float(np.mean(self.printed[:count])))
+
             level = float(np.mean(self.printed))
             text = f"prints {self.name} as a constant, {level:.{_PRINTED_DIGITS}g}"
-            yield self._mapped("constant", text, np.full_like(self.printed, level))
+            yield self._mapped("constant", text, made)
 
     def _copied(self) -> Iterator[_ColumnMap]:
         for other, other_name in enumerate(self.names):
             if other == self.index:
                 continue
+            column = self.case.truth[:, other]
             for sign, prefix in ((1, ""), (-1, "−")):
                 text = f"prints {prefix}{other_name} in its column of {self.name}"
-                yield self._mapped("copied", text, sign * self.case.truth[:, other])
+                yield self._mapped("copied", text, _always(sign * column))
 
     def _scaled(self) -> Iterator[_ColumnMap]:
         true = self.true
-        square = float(true @ true)
-        factor = float(true @ self.printed) / square if square else 0.0
         size = rms(true[:, None])
+        if not size:
+            return
+
+        def made(count: int) -> Array:
+            return _factor(true[:count], self.printed[:count]) * true
+
+        factor = _factor(true, self.printed)
         # a constant and a mirrored column have words of their own
         if min(abs(factor), abs(factor + 1)) * size > RIVAL * self.case.resolution:
             uncertainty = _uncertainty_m(self.case, self.printed - factor * true) / size
             number = _FittedNumber.of(factor, uncertainty)
             text = f"prints {self.name} times {number.text}"
-            yield self._mapped("scaled", text, factor * true, 1 + number.price)
+            yield self._mapped("scaled", text, made, 1 + number.price)
 
     def _moved(self) -> _ColumnMap:
-        shift = float(np.mean(self.printed - self.true))
-        residuals = self.printed - self.true - shift
-        number = _FittedNumber.of(shift, _uncertainty_m(self.case, residuals))
+        differences = self.printed - self.true
+
+        def made(count: int) -> Array:
+            return self.true + float(np.mean(differences[:count]))
+
+        shift = float(np.mean(differences))
+        number = _FittedNumber.of(shift, _uncertainty_m(self.case, differences - shift))
         text = f"prints {self.name} with {number.text} m added to it"
-        return self._mapped("moved", text, self.true + shift, 1 + number.price)
+        return self._mapped("moved", text, made, 1 + number.price)
 
     def _late(self) -> Iterator[_ColumnMap]:
         for count in _LATE_ROWS:
@@ -153,7 +205,18 @@ class _Column:
                 continue
             rows = "one row" if abs(count) == 1 else f"{abs(count)} rows"
             text = f"prints {self.name} {rows} {'late' if count > 0 else 'early'}"
-            yield self._mapped("late", text, _late(self.printed, self.true, count))
+            yield self._mapped("late", text, _always(_late(self.printed, self.true, count)))
+
+
+def _always(values: Array) -> Callable[[int], Array]:
+    """Return the values of a map without numbers, to whatever rows it is fitted."""
+    return lambda count: values
+
+
+def _factor(true: Array, printed: Array) -> float:
+    """Return the factor that fits printed = factor * true best."""
+    square = float(true @ true)
+    return float(true @ printed) / square if square else 0.0
 
 
 def _late(printed: Array, true: Array, count: int) -> Array:
@@ -180,10 +243,15 @@ class _Plane:
     printed: ComplexArray
     true: ComplexArray
 
-    @property
-    def factor(self) -> complex:
-        """The number that fits printed = factor * true best."""
-        return complex(np.vdot(self.true, self.printed) / np.vdot(self.true, self.true))
+    def _factor(self, count: int) -> complex:
+        """Return the number that fits printed = factor * true best in the first `count` rows."""
+        true = self.true[:count]
+        square = np.vdot(true, true)
+        return complex(np.vdot(true, self.printed[:count]) / square) if square else 0j
+
+    def _shift(self, count: int) -> complex:
+        """Return the number that fits printed = true + number best in the first `count` rows."""
+        return complex(np.mean(self.printed[:count] - self.true[:count]))
 
     def maps(self) -> Iterator[_ColumnMap]:
         """Yield the maps that may have made them."""
@@ -193,61 +261,87 @@ class _Plane:
         yield self._scaled_and_turned()
         yield self._similar()
 
-    def _mapped(self, word: str, text: str, plane: ComplexArray, price: int) -> _ColumnMap:
-        positions = np.column_stack([plane.real, plane.imag])
-        return _ColumnMap(f"plane_{word}", text, (0, 1), positions, price)
+    def _mapped(
+        self, word: str, text: str, made: Callable[[int], ComplexArray], price: int
+    ) -> _ColumnMap:
+        def columns_of(count: int) -> Array:
+            plane = made(count)
+            return np.column_stack([plane.real, plane.imag])
+
+        return _ColumnMap(f"plane_{word}", text, (0, 1), columns_of, price)
+
+    def _uncertainty(self, plane: ComplexArray) -> float:
+        """Return an estimate of the error in m of a map that makes the plane."""
+        return _uncertainty_m(self.case, self.printed - plane)
 
     def _relative_uncertainty(self, plane: ComplexArray) -> float:
         """Return an estimate of the error of a factor with which a map makes the plane."""
-        return _uncertainty_m(self.case, self.printed - plane) / rms(self.true[:, None])
+        return self._uncertainty(plane) / rms(self.true[:, None])
 
     def _scaled(self) -> _ColumnMap:
-        scale = self.factor.real
-        plane = scale * self.true
-        number = _FittedNumber.of(scale, self._relative_uncertainty(plane))
-        return self._mapped(
-            "scaled", f"prints x and y times {number.text}", plane, 1 + number.price
-        )
+        def made(count: int) -> ComplexArray:
+            return self._factor(count).real * self.true
+
+        every = len(self.true)
+        scale = self._factor(every).real
+        number = _FittedNumber.of(scale, self._relative_uncertainty(made(every)))
+        text = f"prints x and y times {number.text}"
+        return self._mapped("scaled", text, made, 1 + number.price)
 
     def _turned(self) -> _ColumnMap:
-        turn = cmath.phase(self.factor)
-        plane = self.true * cmath.exp(1j * turn)
-        uncertainty = self._relative_uncertainty(plane)
+        def made(count: int) -> ComplexArray:
+            return self.true * cmath.exp(1j * cmath.phase(self._factor(count)))
+
+        every = len(self.true)
+        turn = cmath.phase(self._factor(every))
+        uncertainty = self._relative_uncertainty(made(every))
         radians = _FittedNumber.of(turn, uncertainty)
         degrees = _FittedNumber.of(math.degrees(turn), math.degrees(uncertainty))
         angle = f"{degrees.text} degrees" if radians.price else f"{radians.text} rad"
         text = f"prints x and y turned by {angle}, anticlockwise"
         # the angle is typed if it has few digits in one of the units
-        return self._mapped("turned", text, plane, 1 + radians.price * degrees.price)
+        return self._mapped("turned", text, made, 1 + radians.price * degrees.price)
 
     def _moved(self) -> _ColumnMap:
-        shift = complex(np.mean(self.printed - self.true))
-        uncertainty = _uncertainty_m(self.case, self.printed - self.true - shift)
+        def made(count: int) -> ComplexArray:
+            return self.true + self._shift(count)
+
+        every = len(self.true)
+        shift = self._shift(every)
+        uncertainty = self._uncertainty(made(every))
         x = _FittedNumber.of(shift.real, uncertainty)
         y = _FittedNumber.of(shift.imag, uncertainty)
         text = f"prints x and y with {x.text} m and {y.text} m added to them"
-        return self._mapped("moved", text, self.true + shift, 2 + x.price + y.price)
+        return self._mapped("moved", text, made, 2 + x.price + y.price)
 
     def _scaled_and_turned(self) -> _ColumnMap:
-        plane = self.factor * self.true
-        uncertainty = self._relative_uncertainty(plane)
-        scale = _FittedNumber.of(abs(self.factor), uncertainty)
-        turn = math.degrees(cmath.phase(self.factor))
+        def made(count: int) -> ComplexArray:
+            return self._factor(count) * self.true
+
+        every = len(self.true)
+        factor = self._factor(every)
+        uncertainty = self._relative_uncertainty(made(every))
+        scale = _FittedNumber.of(abs(factor), uncertainty)
+        turn = math.degrees(cmath.phase(factor))
         degrees = _FittedNumber.of(turn, math.degrees(uncertainty))
         scaled = f"prints x and y times {scale.text}"
         text = f"{scaled} and turned by {degrees.text} degrees, anticlockwise"
-        return self._mapped("turned", text, plane, 2 + scale.price + degrees.price)
+        return self._mapped("turned", text, made, 2 + scale.price + degrees.price)
 
     def _similar(self) -> _ColumnMap:
         """Return the map that scales, turns and moves, with four free numbers."""
         basis = np.column_stack([self.true, np.ones_like(self.true)])
+
+        def made(count: int) -> ComplexArray:
+            return np.asarray(basis @ solved(basis[:count], self.printed[:count]))
+
         factor, shift = solved(basis, self.printed)
         text = (
             f"prints x and y times {abs(factor):.6g}, "
             f"turned by {math.degrees(cmath.phase(factor)):.6g} degrees, "
             f"with {shift.real:.6g} m and {shift.imag:.6g} m added"
         )
-        return self._mapped("moved", text, factor * self.true + shift, 8)
+        return self._mapped("moved", text, made, 8)
 
 
 def _maps_of_plane(case: FileCase) -> list[_ColumnMap]:
@@ -262,12 +356,17 @@ def _maps_of_plane(case: FileCase) -> list[_ColumnMap]:
 def _general_map(case: FileCase) -> _ColumnMap:
     """Return the linear map of x and y, with six free numbers."""
     basis = np.column_stack([case.truth[:, :2], np.ones(len(case.truth))])
-    numbers = solved(basis, case.rows.positions[:, :2])
+    printed = case.rows.positions[:, :2]
+
+    def made(count: int) -> Array:
+        return np.asarray(basis @ solved(basis[:count], printed[:count]))
+
+    numbers = solved(basis, printed)
     (a, b, c), (d, e, f) = numbers.T
     x = f"{a:.6g} x {b:+.6g} y {c:+.6g} m"
     y = f"{d:.6g} x {e:+.6g} y {f:+.6g} m"
     text = f"prints a linear map of x and y: {x}, and {y}"
-    return _ColumnMap("plane_mapped", text, (0, 1), basis @ numbers, 12)
+    return _ColumnMap("plane_mapped", text, (0, 1), made, 12)
 
 
 @dataclass(frozen=True)
@@ -299,24 +398,24 @@ def of_observation(case: FileCase) -> Explanation | None:
     if not wrong or not spans_a_swing:
         return None
     choice = _cheapest_choice(case, wrong)
-    if not math.isfinite(choice.price) or ROWS_A_NUMBER * choice.price > len(case.rows.times):
+    if not math.isfinite(choice.price):
         return None
 
     residuals = case.rows.positions - case.truth
     certain: list[Deviation] = []
     doubtful: list[Deviation] = []
     for maps in choice.groups:
-        columns = maps[0].columns
-        size_m = largest(residuals[:, columns])
-        residuals[:, columns] = maps[0].residuals(case)
-        deviation = _reported(maps, size_m)
-        if deviation.stage:
-            doubtful.append(deviation)
+        claim = _MapClaim.about(case, maps[0])
+        size_m = largest(claim.case.rows.positions - claim.case.truth)
+        said = tested(claim, _reported(maps, size_m), claim.case.error)
+        if said is None:
+            return None
+        residuals[:, maps[0].columns] = claim.left
+        if said.stage:
+            doubtful.append(said)
         else:
-            certain.append(deviation)
-    explanation = case.explanation(
-        tuple(doubtful), largest(residuals), rms(residuals), int(choice.price)
-    )
+            certain.append(said)
+    explanation = case.explanation(tuple(doubtful), residuals, int(choice.price))
     return replace(explanation, conventions=(*explanation.conventions, *certain))
 
 
@@ -336,14 +435,12 @@ def _cheapest_choice(case: FileCase, wrong: Sequence[int]) -> _Choice:
 def _reported(maps: Sequence[_ColumnMap], size_m: float) -> Deviation:
     """Return what is reported of maps that make the same columns; their effect is a size in m."""
     first = maps[0]
+    deviation = Deviation(first.id, first.text, size_m)
     if first.id == "plane_mapped" or len(maps) > ALTERNATIVES:
-        text = f"looks like one that {first.text}"
-        return Deviation(f"{AS_IF}.{first.id}", text, size_m, AS_IF)
+        return hedged(deviation)
     if len(maps) == 1:
-        return Deviation(first.id, first.text, size_m)
-    ids = "|".join(column_map.id for column_map in maps)
-    texts = ", or ".join(column_map.text for column_map in maps)
-    return Deviation(ids, f"either {texts}", size_m, EITHER)
+        return deviation
+    return one_of([Alternative(each.id, each.text) for each in maps], size_m)
 
 
 def _best(case: FileCase, maps: Sequence[_ColumnMap]) -> tuple[_ColumnMap, ...]:

@@ -1,89 +1,117 @@
-"""A slip in a program's force, read from its rows alone.
-
-The slip is a wrong term, or a bob that falls or swings ever wider.
+"""A slip in a program's force: a wrong term, or a bob that falls or swings ever wider.
 
 Near its lowest point the bob's acceleration is nearly linear in x, y and their velocities. The
-difference of the rows' acceleration from the model's is fitted by such terms, and the largest are
-named together with the model's own. The rows have to be close enough to be differentiated twice.
+difference of the rows' accelerations from the model's proposes terms whose coefficients are wrong.
+Each proposal is run, its coefficients fitted to the rows, and has to pass the tests of a claim. The
+rows have to be close enough to be differentiated twice.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 
-from reference import Scene
-from reference.model.constants import Constants, constants_in_double
+from reference import FoucaultError
+from reference.engines.heyoka.propagator import AutonomousSystem, Propagator
+from reference.engines.trajectory import MAX_STEPS
+from reference.model.constants import Constants
 from reference.model.force import acceleration
-from reference.numbers.precision import Array
+from reference.numbers.precision import DOUBLE, Array
 
-from ..observed.least_squares import solved
-from .case import FileRows
+from ..candidates.candidate import Deviation
+from ..observed.least_squares import by_differences, gauss_newton, solved
+from .case import Explanation, FileCase, FileRows
+from .claims import tested
+from .families import windows
+from .hypotheses import Claim
 from .programs import Program
-from .thresholds import RIVAL
+from .thresholds import NEEDED, RIVAL
 
 # stencils of order 6 for the first and the second derivative
 _FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60
 _SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
-# of order 4: its difference from the other estimates the error
-_COARSE = np.array([-1, 16, -30, 16, -1]) / 12
 _LEAST = 30  # rows that can be differentiated
 _USUAL = 0.15  # rad of the swing: step between rows that are differentiated
 _FARTHEST = 0.5  # rad of the swing: the largest step
-_CLEAR = 10.0  # times their own error: accelerations that are wrong
-_EXPLAINED = 0.02  # of the mean square: what the terms named may leave
-_MOST = 3  # terms that are named
+_PROPOSED = 0.02  # of the mean square of the accelerations' errors: what terms leave that are run
+_MOST = 3  # terms that are run together
+_TRIED = 4  # proposals that are run
 _WORK = 0.2  # of |force| |velocity|: a force that does work
-_ALIKE = 0.2  # relative difference of two terms with the same error
 _LOW = 0.3  # of the length: farther out, the force is not linear
 _TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
-# equation and name of two terms whose same error is that of one number: g or the length, drag
-_ONE_NUMBER = ((("x", "x"), ("y", "y")), (("x", "vx"), ("y", "vy")))
-_NUDGE = 1e-6
+_PLACES = tuple(itertools.product(range(2), range(len(_TERMS))))  # of a term: equation, and name
+_NUDGE = 1e-6  # by which velocities and coefficients are moved for a slope, of their sizes
+_WINDOWS = 4.0  # ratio of the span of rows that are fitted to the one before
+_SHORTEST = 16  # rows in the first of them
+_NEWTON = 8  # steps in one window
+_GAIN = 0.9  # of the residual: a step that leaves more is not taken
 _PARTS = 4  # of the rows
 _GROWN = 2.0  # how many times as far as in the first part a growing motion reaches in the last
 _FREELY = (0.5, 2.5)  # of g: range of a fall's mean acceleration, from row 0 to every other row
 
 
-def slip(rows: FileRows, scene: Scene) -> str:
-    """Return a sentence on the part of the force that is wrong; empty if no row shows it."""
-    k = constants_in_double(scene.exact)
-    swing_rate = float(np.linalg.norm([float(component) for component in k.pull])) ** 0.5
+def of_slip(
+    case: FileCase, rows: FileRows, constants: Constants, without_m: float
+) -> Explanation | None:
+    """Return the explanation that some terms of a program's force are wrong; None if none passes the tests.
+
+    Args:
+        case: some of the rows.
+        rows: all of them.
+        constants: of the scene's force, as floats.
+        without_m: root mean square in m that is left without a slip.
+    """
+    best = _simplest(list(_claims(case.in_the_plane(), rows, constants)))
+    if best is None:
+        return None
+    proposed = Deviation("slip", best.sentence, stage="model")
+    if tested(best, proposed, without_m) is not proposed:
+        return None
+    explanation = best.case.explanation((), best.left, best.price)
+    return replace(explanation, slip=proposed.text)
+
+
+def _simplest(claims: Sequence[_SlipClaim]) -> _SlipClaim | None:
+    """Return the cheapest claim, unless a dearer one leaves far less; None if another one has other terms.
+
+    In a swing whose x and y keep their ratio, a term with x does what one with y does.
+    """
+    if not claims:
+        return None
+    best, *dearer = sorted(claims, key=lambda claim: (claim.price, claim.rest))
+    for claim in dearer:
+        less = RIVAL if claim.price == best.price else NEEDED
+        if less * claim.rest <= best.rest:
+            best = claim
+    for rival in claims:
+        cheap = rival.price <= best.price and rival.rest <= RIVAL * best.rest
+        if cheap and rival.slip.places != best.slip.places:
+            return None
+    return best
+
+
+def _claims(case: FileCase, rows: FileRows, constants: Constants) -> Iterator[_SlipClaim]:
+    """Yield the claims that the accelerations of rows propose, each run on the sphere and as a linear model."""
+    swing_rate = float(np.linalg.norm(constants.pull)) ** 0.5
     motion = _differentiated(rows.times, rows.plane, swing_rate)
-    if motion is None:
-        return ""
-    state = motion.state
-    if not float(np.abs(state[:2]).max()) < _LOW * k.length:
-        return ""
+    if motion is None or not float(np.abs(motion.state[:2]).max()) < _LOW * constants.length:
+        return
     # whatever a program takes g for, a slip is an error beside that
-    effective = replace(k, pull=(0, 0, -k.gravity), centrifugal=(0, 0, 0, 0))
-    k = min(
-        k, effective, key=lambda constants: _rms(motion.accelerations - _model(state, constants))
+    effective = replace(
+        constants, pull=(0.0, 0.0, -constants.gravity), centrifugal=(0.0, 0.0, 0.0, 0.0)
     )
-    errors = motion.accelerations - _model(state, k)
-    size = _rms(errors)
-    if not size > _CLEAR * motion.error:
-        return ""
-    terms = list(_terms(state, errors, k))
-    if not terms or _alike(terms):
-        return ""
-
-    sentences = "; ".join(term.sentence for term in terms)
-    work = ""
-    if _does_work(errors, state[2:]):
-        work = " The difference does work, as no Coriolis force does."
-    reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
-    difference = f"differ from the model's{reading} by {size:.2g} m/s²"
-    return f"Its accelerations {difference}: {sentences}.{work}"
-
-
-def _does_work(errors: Array, velocities: Array) -> bool:
-    """Return whether errors of the accelerations do work along the motion."""
-    power = np.mean(np.sum(errors * velocities, axis=0))
-    return bool(abs(power) > _WORK * 2 * _rms(errors) * _rms(velocities))
+    reading = min(constants, effective, key=lambda k: _rms(motion.errors(k)))
+    for coefficients in _proposed(motion, reading):
+        for kind in ("sphere", "linear"):
+            claim = _SlipClaim.fitted(case, _Slip(reading, kind, coefficients))
+            if claim is not None:
+                yield claim
 
 
 def _rms(values: Array) -> float:
@@ -98,12 +126,14 @@ class _MotionOfRows:
     Attributes:
         state: x, y, vx, vy in m and m/s, shape (4, rows).
         accelerations: of x and y in m/s², shape (2, rows).
-        error: an estimate of the accelerations' root mean square error in m/s².
     """
 
     state: Array
     accelerations: Array
-    error: float
+
+    def errors(self, k: Constants) -> Array:
+        """Return the accelerations less those of the model in m/s², shape (2, rows)."""
+        return np.asarray(self.accelerations - _model(self.state, k))
 
 
 def _differentiated(times: Array, plane: Array, swing_rate: float) -> _MotionOfRows | None:
@@ -122,11 +152,10 @@ def _differentiated(times: Array, plane: Array, swing_rate: float) -> _MotionOfR
     plane = plane[::stride]
     velocities = _convolved(plane, _FIRST) / h
     accelerations = _convolved(plane, _SECOND) / h**2
-    coarse = _convolved(plane, _COARSE)[:, 1:-1] / h**2
     if h * h * _rms(accelerations) > _rms(plane):  # the bob turns back from row to row
         return None
     state = np.vstack([plane[3:-3].T, velocities])
-    return _MotionOfRows(state, accelerations, _rms(accelerations - coarse))
+    return _MotionOfRows(state, accelerations)
 
 
 def _convolved(plane: Array, stencil: Array) -> Array:
@@ -142,109 +171,223 @@ def _model(state: Array, k: Constants) -> Array:
     return np.asarray(np.array([ax, ay]) * k.length)
 
 
-@dataclass(frozen=True)
-class _Term:
-    """A term of an equation of motion: its coefficient in the rows, and in the model."""
+_Place = tuple[
+    int, int
+]  # 0 for the equation of x, 1 for that of y; and the index of a term in `_TERMS`
 
-    equation: str
-    name: str
-    value: float
-    right: float
+
+@dataclass(frozen=True)
+class _Proposal:
+    """Errors of coefficients, by place, and the mean square in m²/s⁴ that they leave of the accelerations' errors."""
+
+    coefficients: dict[_Place, float]
+    left: float
+
+
+def _proposed(motion: _MotionOfRows, k: Constants) -> list[dict[_Place, float]]:
+    """Return errors of coefficients that explain the accelerations: of the fewest terms, the likeliest first."""
+    errors = motion.errors(k)
+    most = _PROPOSED * float(np.mean(errors**2))
+    for count in range(1, _MOST + 1):
+        proposals = [
+            _fit(motion.state, errors, places) for places in itertools.combinations(_PLACES, count)
+        ]
+        proposals.sort(key=lambda proposal: proposal.left)
+        if proposals[0].left <= most:
+            near = RIVAL**2 * proposals[0].left
+            likely = [each.coefficients for each in proposals if each.left <= near]
+            return likely[:_TRIED]
+    return []
+
+
+def _fit(state: Array, errors: Array, places: Sequence[_Place]) -> _Proposal:
+    """Return the fit of errors by the terms at some places."""
+    basis = np.vstack([np.ones(state.shape[1]), state])
+    coefficients: dict[_Place, float] = {}
+    left = errors.copy()
+    for equation in range(2):
+        terms = [term for where, term in places if where == equation]
+        solution = solved(basis[terms].T, errors[equation])
+        left[equation] -= solution @ basis[terms]
+        for term, coefficient in zip(terms, solution.tolist(), strict=True):
+            coefficients[equation, term] = coefficient
+    return _Proposal(coefficients, float(np.mean(left**2)))
+
+
+@dataclass(frozen=True)
+class _Slip:
+    """A force with some wrong coefficients.
+
+    Attributes:
+        k: the constants of the right force.
+        kind: sphere, or linear in position and velocity.
+        coefficients: their errors by place, in the units of `_TERMS`.
+    """
+
+    k: Constants
+    kind: str
+    coefficients: dict[_Place, float]
+
+    @property
+    def places(self) -> list[_Place]:
+        """Where the coefficients are."""
+        return list(self.coefficients)
+
+    @cached_property
+    def linear(self) -> Array:
+        """The coefficients of the right force about the lowest point, shape (2, 5)."""
+        nudges = _NUDGE * np.eye(4)
+        slopes = (_model(nudges, self.k) - _model(-nudges, self.k)) / (2 * _NUDGE)
+        return np.hstack([_model(np.zeros((4, 1)), self.k), slopes])
+
+    def with_errors(self, errors: Sequence[float]) -> _Slip:
+        """Return the force with other errors of the coefficients, in the order of `places`."""
+        return replace(self, coefficients=dict(zip(self.coefficients, errors, strict=True)))
+
+    def rows(self, start: Array, times: Array) -> Array:
+        """Return x and y in m from a start x, y, vx, vy on, shape (times, 2); NaN where there is no such motion."""
+        terms = self.linear.copy() if self.kind == "linear" else np.zeros((2, len(_TERMS)))
+        for place, error in self.coefficients.items():
+            terms[place] += error
+        terms[:, 0] /= self.k.length
+        parameters = terms.ravel().tolist()
+        if self.kind == "sphere":
+            constants = (*self.k.turn, *self.k.pull, *self.k.centrifugal, self.k.drag)
+            parameters += map(float, constants)
+        since = times - times[0]
+        try:
+            states = _propagator(self.kind).from_zero(
+                (start / self.k.length).tolist(), since, parameters, MAX_STEPS
+            )
+        except (FoucaultError, ValueError, ArithmeticError):
+            return np.full((len(times), 2), np.nan)
+        return np.asarray(states[:, :2] * self.k.length)
+
+
+_CONSTANTS = 11  # numbers of turn, pull, centrifugal force's gradient and drag
+
+
+@cache
+def _propagator(kind: str) -> Propagator:
+    """Return the propagator of x, y, vx, vy over the length.
+
+    The parameters are the coefficients of further terms; on the sphere then turn, pull, centrifugal
+    force's gradient and drag.
+    """
+    count = 2 * len(_TERMS)
+
+    def rates(state: Any, functions: Any, parameters: Any) -> list[Any]:
+        x, y, vx, vy = state
+        further = []
+        for equation in range(2):
+            first = equation * len(_TERMS)
+            constant, by_x, by_y, by_vx, by_vy = parameters[first : first + len(_TERMS)]
+            further.append(constant + by_x * x + by_y * y + by_vx * vx + by_vy * vy)
+        if kind == "linear":
+            return [vx, vy, *further]
+        k = Constants(
+            turn=tuple(parameters[count : count + 3]),
+            pull=tuple(parameters[count + 3 : count + 6]),
+            centrifugal=tuple(parameters[count + 6 : count + 10]),
+            drag=parameters[count + 10],
+        )
+        z = -functions.sqrt(1.0 - x * x - y * y)
+        ax, ay, _ = acceleration((x, y, z), (vx, vy, -(x * vx + y * vy) / z), k)
+        return [vx, vy, ax + further[0], ay + further[1]]
+
+    parameters = count if kind == "linear" else count + _CONSTANTS
+    return Propagator(AutonomousSystem(("x", "y", "vx", "vy"), rates, parameters), DOUBLE)
+
+
+@dataclass(frozen=True, eq=False)
+class _SlipClaim(Claim):
+    """The claim that a program has a slip.
+
+    Attributes:
+        slip: its force.
+        velocity: vx and vy at the first row in m/s.
+    """
+
+    slip: _Slip
+    velocity: Array
+
+    @classmethod
+    def fitted(cls, case: FileCase, slip: _Slip) -> _SlipClaim | None:
+        """Return the claim with coefficients and velocity fitted to the rows; None if there is no such motion."""
+        times = case.rows.times
+        first, second, third, *_ = case.rows.plane
+        velocity = (4 * second - third - 3 * first) / (times[2] - times[0])
+        claim = cls(case, case.rows.positions, slip, velocity)
+        for count in windows(times - times[0], _WINDOWS, _SHORTEST, 2 * _SHORTEST):
+            claim = claim._fitted_to(count)
+        return claim if math.isfinite(claim.rest) else None
+
+    def _fitted_to(self, count: int) -> _SlipClaim:
+        """Return the claim with its numbers fitted to the first `count` rows."""
+        times = self.case.rows.times
+        plane = self.case.rows.plane
+        numbers = np.array([*self.slip.coefficients.values(), *self.velocity])
+
+        def motion(numbers: Array, count: int) -> Array:
+            slip = self.slip.with_errors(numbers[:-2].tolist())
+            return slip.rows(np.concatenate([plane[0], numbers[-2:]]), times[:count])
+
+        def rows_with(numbers: Array) -> Array:
+            return motion(numbers, count).ravel()
+
+        speed = math.sqrt(abs(self.slip.k.pull[2])) * float(np.abs(plane).max())
+        sizes = [abs(number) for number in self.slip.coefficients.values()]
+        nudges = _NUDGE * np.array([*sizes, speed, speed])
+        model = by_differences(rows_with, plane[:count].ravel(), nudges)
+        numbers, _ = gauss_newton(model, numbers, steps=_NEWTON, gain=_GAIN)
+        left = plane - motion(numbers, len(times))
+        slip = self.slip.with_errors(numbers[:-2].tolist())
+        return replace(self, left=left, slip=slip, velocity=numbers[-2:])
+
+    @property
+    def free_numbers(self) -> int:
+        """Its coefficients, and the velocity at the first row."""
+        return len(self.slip.coefficients) + 2
+
+    def foreseen(self, count: int) -> Array:
+        """Return what is left in m if the numbers are fitted to the first `count` rows."""
+        return self._fitted_to(count).left
+
+    @property
+    def price(self) -> int:
+        """Two for each coefficient, and one for a linear model."""
+        return 2 * len(self.slip.coefficients) + (self.slip.kind == "linear")
 
     @property
     def sentence(self) -> str:
-        """What is reported of it."""
-        name = "the constant term" if self.name == "1" else f"the term with {self.name}"
-        value = f"{self.value:.6g} {_TERMS[self.name]}"
-        right = f"{self.right + 0.0:.6g}"
-        return f"in the equation of {self.equation}, {name} is {value} where the model has {right}"
+        """What is said of it."""
+        k = self.slip.k
+        model = "linear model" if self.slip.kind == "linear" else "model"
+        reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity"
+        terms = "; ".join(map(self._term, self.slip.places))
+        work = " The difference does work, as no Coriolis force does." if self._does_work() else ""
+        return f"Its accelerations differ from the {model}'s{reading}: {terms}.{work}"
 
+    def _term(self, place: _Place) -> str:
+        """Return what is said of a term."""
+        equation, term = place
+        word = list(_TERMS)[term]
+        name = "the constant term" if word == "1" else f"the term with {word}"
+        right = float(self.slip.linear[place])
+        value = f"{right + self.slip.coefficients[place]:.6g} {_TERMS[word]}"
+        where = f"in the equation of {'xy'[equation]}, {name}"
+        return f"{where} is {value} where the model has {right + 0.0:.6g}"
 
-def _terms(state: Array, errors: Array, k: Constants) -> Iterator[_Term]:
-    """Yield the fewest terms that explain the errors of accelerations; none if they are many."""
-    basis = np.vstack([np.ones(state.shape[1]), state])
-    scale = np.sqrt(np.mean(basis**2, axis=1))
-    scale[scale == 0] = 1.0
-    basis /= scale[:, None]
-    coefficients = _fewest_coefficients(basis, errors)
-
-    # the model's coefficients, by central differences about the lowest point
-    nudges = _NUDGE * np.eye(4)
-    slopes = (_model(nudges, k) - _model(-nudges, k)) / (2 * _NUDGE)
-    model = np.hstack([_model(np.zeros((4, 1)), k), slopes])
-    for (i, j), coefficient in coefficients.items():
-        right = float(model[i, j])
-        yield _Term("xy"[i], list(_TERMS)[j], right + coefficient / float(scale[j]), right)
-
-
-def _fewest_coefficients(basis: Array, errors: Array) -> dict[tuple[int, int], float]:
-    """Return the coefficients of the fewest terms that explain errors, by equation and term.
-
-    The terms are in the order in which they were chosen, each the one that leaves least. There are
-    none if more than `_MOST` are needed.
-    """
-    candidates = [(i, j) for i in range(2) for j in range(len(_TERMS))]
-    total = float(np.sum(errors**2))
-    chosen: list[tuple[int, int]] = []
-    while len(chosen) < _MOST:
-        fits = {}
-        for place in candidates:
-            if place not in chosen:
-                fits[place] = _fit(basis, errors, [*chosen, place])
-        best = min(fits, key=lambda place: (fits[place].residual, place))
-        chosen.append(best)
-        if fits[best].residual < _EXPLAINED * total:
-            most = RIVAL**2 * fits[best].residual
-            if len(chosen) > 1 and _is_one_number(basis, errors, most):
-                return {}
-            return {place: fits[best].coefficients[place] for place in chosen}
-    return {}
-
-
-def _is_one_number(basis: Array, errors: Array, most: float) -> bool:
-    """Return whether the same error in x and y, of one number, leaves no more than `most`, a sum of squares.
-
-    In a swing whose x and y keep their ratio, a term with x does what one with y does.
-    """
-    for pair in _ONE_NUMBER:
-        places = [("xy".index(equation), list(_TERMS).index(name)) for equation, name in pair]
-        fit = _fit(basis, errors, places)
-        first, second = fit.coefficients.values()
-        if fit.residual <= most and first * second > 0:
-            return True
-    return False
-
-
-@dataclass(frozen=True)
-class _TermFit:
-    """The sum of squares that some terms leave, and their coefficients by equation and term."""
-
-    residual: float
-    coefficients: dict[tuple[int, int], float]
-
-
-def _fit(basis: Array, errors: Array, places: list[tuple[int, int]]) -> _TermFit:
-    """Return the fit of errors by the terms at some places."""
-    residual = 0.0
-    coefficients: dict[tuple[int, int], float] = {}
-    for i, values in enumerate(errors):
-        terms = [j for equation, j in places if equation == i]
-        solution = solved(basis[terms].T, values)
-        for j, coefficient in zip(terms, solution, strict=True):
-            coefficients[i, j] = float(coefficient)
-        residual += float(np.sum((values - solution @ basis[terms]) ** 2))
-    return _TermFit(residual, coefficients)
-
-
-def _alike(terms: list[_Term]) -> bool:
-    """Return whether x and y have the same error.
-
-    Then a number, such as g or drag, or the integrator is wrong.
-    """
-    if {(term.equation, term.name) for term in terms} not in [set(pair) for pair in _ONE_NUMBER]:
-        return False
-    first, second = (term.value - term.right for term in terms)
-    return abs(first - second) < _ALIKE * abs(first)
+    def _does_work(self) -> bool:
+        """Return whether the wrong terms do work along the motion."""
+        times = self.case.rows.times
+        velocities = np.gradient(self.case.rows.plane, times, axis=0).T
+        basis = np.vstack([np.ones(len(times)), self.case.rows.plane.T, velocities])
+        errors = np.zeros((2, len(times)))
+        for (equation, term), coefficient in self.slip.coefficients.items():
+            errors[equation] += coefficient * basis[term]
+        power = np.mean(np.sum(errors * velocities, axis=0))
+        return bool(abs(power) > _WORK * 2 * _rms(errors) * _rms(velocities))
 
 
 def falls(rows: FileRows, right: Program) -> str:

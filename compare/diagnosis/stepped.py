@@ -25,9 +25,10 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .claims import Hypothesis, explanation_of
+from .claims import explanation_of, tested
 from .families import fit_pendulum
-from .fitted import readings_of
+from .fitted import polished, readings_of
+from .hypotheses import Claim, Hypothesis
 from .loops import LinearSteps, likely_loops
 from .phasors import METHODS
 from .programs import Program, SphericalPendulum
@@ -181,7 +182,7 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
         return by_loop
 
     rows = case.rows
-    flat = _in_the_plane(case)
+    flat = case.in_the_plane()
     right = case.right.changed(length=case.rows.cord or case.right.length)
     program = None if reading is None else reading.program
     explanations = []
@@ -201,18 +202,12 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
 
 def of_loops(case: FileCase) -> Explanation | None:
     """Return the explanation of rows that a loop of statements made, one after the other; None if none did."""
-    flat = _in_the_plane(case)
+    flat = case.in_the_plane()
     for loop in likely_loops(flat):
         explanation = _explanation_with(flat, loop)
         if explanation is not None:
             return explanation
     return None
-
-
-def _in_the_plane(case: FileCase) -> FileCase:
-    """Return a case of x and y alone."""
-    rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
-    return replace(case, rows=rows, truth=case.truth[:, :2])
 
 
 @dataclass(frozen=True)
@@ -275,9 +270,16 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
         return None
     readings = [replace(best.reading, rest=rms(residuals)), *readings]
     explanation, _ = explanation_of(motion.taken_from(case), readings)
-    causes = (*explanation.causes, step_cause(motion.steps, motion.effect))
-    tested = case.tested(causes, residuals, len(causes))
-    return tested if tested.causes else None
+    without_steps = polished(case, best.reading)
+    step = tested(
+        Claim(case, residuals),
+        step_cause(motion.steps, motion.effect),
+        rms(case.left(without_steps.program)),
+    )
+    if step is None:
+        return None
+    causes = (*explanation.causes, step)
+    return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
 
 
 def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:

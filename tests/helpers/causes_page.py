@@ -10,8 +10,7 @@ from typing import Any
 from places import ROOT
 
 from compare.diagnosis.advice import DO, FAMILIES, HABITS
-from compare.diagnosis.causes import causes_of
-from compare.diagnosis.claims import LOOSE
+from compare.diagnosis.causes import LOOSE, causes_of
 from compare.diagnosis.fitted import MODELS
 from compare.diagnosis.programs import Program
 

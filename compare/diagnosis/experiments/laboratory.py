@@ -55,7 +55,8 @@ class Laboratory:
             explanation,
         )
         # axes as they were read
-        self._rename = any(convention.id in RENAMED for convention in explanation.conventions)
+        renamed = any(convention.id in RENAMED for convention in explanation.conventions)
+        self._without = frozenset() if renamed else RENAMED
         self._reach = 0.0
         self._findings: list[Finding] = []
         self._likely: list[tuple[Steps, str]] | None = None
@@ -127,7 +128,7 @@ class Laboratory:
             if run.setting != 1 and len(run.case.rows.times) == len(first.case.rows.times):
                 changed = largest(run.case.rows.positions - first.case.rows.positions)
                 if changed > first.case.enough:
-                    return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0)]
+                    return [_of_loose_integrator(first, changed)]
         try:
             read = [(run.case, readers_of(run.case, list(run.fits.values()))) for run in self._runs]
         except UNSOLVED:
@@ -139,9 +140,9 @@ class Laboratory:
             if reader.right.kind == "sphere"
         ]
         drifting = {id(case) for case, reader in spheres if reader.drifts(case, reader.right)}
-        error_m = _error_m(first)
-        explanation = first.case.explanation((loose(error_m),), error_m, 0.0, 0)
-        return [explanation] if len(drifting) == len(self._runs) > LEAST_RUNS else []
+        if not len(drifting) == len(self._runs) > LEAST_RUNS:
+            return []
+        return [_of_loose_integrator(first, _error_m(first))]
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""
@@ -180,7 +181,7 @@ class Laboratory:
 
     def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
         """Return a trial of x and y; what may be left of them is as large a part of the swing as of the first."""
-        rows = problem.rows(candidate.t, candidate.columns, self._rename)
+        rows = problem.rows(candidate.t, candidate.columns, self._without)
         rows = replace(rows, positions=np.ascontiguousarray(rows.plane), cord=None)
         case = problem.case(rows, self._allowed_m)
         reach = largest(case.truth)
@@ -205,6 +206,12 @@ def _explanations_of(case: JointCase, *step: Deviation) -> list[Explanation]:
             explained.append(groups)
     sets = [_ids(explanation) for explanation in explanations]
     return [explanations[i] for i, ids in enumerate(sets) if not any(fewer < ids for fewer in sets)]
+
+
+def _of_loose_integrator(trial: Trial, size_m: float) -> Explanation:
+    """Return the explanation that an integrator's error moves the bob by a size in m: nothing of it is put right."""
+    case = trial.case
+    return case.explanation((loose(size_m),), case.rows.positions - case.truth, 0)
 
 
 def _ids(explanation: Explanation) -> set[str]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mistakes import told
 
-from compare.diagnosis.claims import has_few_digits
+from compare.diagnosis.hypotheses import has_few_digits
 from reference import Scene, load_scene, trajectory
 
 TIMES = np.linspace(0, 600, 301)

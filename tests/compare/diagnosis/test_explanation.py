@@ -26,8 +26,6 @@ from small_scenes import make_scene
 from typer.testing import CliRunner
 
 from compare import APPROXIMATIONS, Candidate, Score, judge
-from compare.diagnosis.case import FileRows
-from compare.diagnosis.slips import slip
 from compare.score.document import document
 from foucault import commands
 from reference import Scene, load_scene, trajectory
@@ -630,8 +628,8 @@ def test_in_a_straight_swing_no_term_is_named_that_another_one_replaces() -> Non
     )
     times = 0.1 * np.arange(300)
     swing = np.cos(np.sqrt(9.80665 / 1.006) * times)
-    rows = FileRows(times, np.column_stack([0.01 * swing, 0.015 * swing]), 0.0)
-    assert slip(rows, scene) == ""
+    found = told(scene, times, {"x": 0.01 * swing, "y": 0.015 * swing}, 2e-8)
+    assert not found.agrees and found.explanation.slip == ""
 
 
 def test_a_term_that_no_other_one_replaces_is_named() -> None:
@@ -642,6 +640,6 @@ def test_a_term_that_no_other_one_replaces_is_named() -> None:
     times = 0.1 * np.arange(300)
     right = np.sqrt(9.80665)
     columns = [0.01 * np.cos(right * times), 0.004 * np.sin(0.99 * right * times)]
-    said = slip(FileRows(times, np.column_stack(columns), 0.0), scene)
-    assert "in the equation of y, the term with y" in said
-    assert "equation of x" not in said
+    found = told(scene, times, dict(zip("xy", columns, strict=True)), 1e-8)
+    assert "in the equation of y, the term with y" in found.explanation.slip
+    assert "equation of x" not in found.explanation.slip
