@@ -19,7 +19,7 @@ import numpy as np
 from ..candidates.candidate import Deviation
 from .case import AS_IF, EITHER, HARMLESS, Explanation, FileCase, NamedModel, largest
 from .causes import EFFECTIVE, LOOSE, is_like_a_drift
-from .drift import drifting
+from .drift import drifting, instead_of_drift
 from .fitted import model_of, sentences, sized
 from .hypotheses import (
     Claim,
@@ -119,6 +119,9 @@ def explanation_of(
     if best.untyped or not best.explains:
         hypotheses += _harmless(case, drifting(case, readings))
         hypotheses = [one for one in hypotheses if not one.names_no_step] or hypotheses
+        best = without_needless(simplest(hypotheses))
+    if best.drifts:
+        hypotheses += _harmless(case, list(instead_of_drift(case, best.reading)))
         best = without_needless(simplest(hypotheses))
     reported, needs = worth_saying(best)
     if not reported.leaves_little or not reported.is_harmless:

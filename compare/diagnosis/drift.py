@@ -6,13 +6,13 @@ causes are read from what a drift of phase and amplitude does not change.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from .case import FileCase
-from .causes import DRIFT, causes_of, is_like_a_drift
+from .causes import DRIFT, LIKE_A_DRIFT, causes_of, is_like_a_drift
 from .families import FamilyFit
 from .fitted import TRIED, polished
 from .programs import NAMES
@@ -39,6 +39,18 @@ def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]
         different.setdefault((reading.program.kind, texts), reading)
     beside = [_with_drift(reading) for reading in different.values()]
     return [polished(case, reading) for reading in beside if reading is not None]
+
+
+def instead_of_drift(case: FileCase, reading: CauseReading) -> Iterator[CauseReading]:
+    """Yield readings with one number in place of a drift, which may be the same motion."""
+    reader = reading.reader
+    without = reader.without(reading, DRIFT)
+    groups = {cause.group for cause in without.causes}
+    for cause in causes_of(case, reading.program.kind):
+        if cause.id in LIKE_A_DRIFT and cause.free and cause.group not in groups:
+            beside = reader.with_cause(without, cause)
+            if beside is not None:
+                yield polished(case, beside)
 
 
 def _with_drift(reading: CauseReading) -> CauseReading | None:

@@ -85,9 +85,10 @@ def same_motions(
         if not before <= words:
             continue
         dropped = [cause for cause in reading.causes if cause.id in before]
+        missing = after - words
         other: CauseReading | None = reading.reader.without(reading, dropped)
         for cause in catalogue:
-            if other is not None and cause.id in after:
+            if other is not None and cause.id in missing:
                 other = reading.reader.with_cause(other, cause)
         if other is not None and after <= {cause.id for cause in other.causes}:
             yield polished(case, other)

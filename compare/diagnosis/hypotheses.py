@@ -208,10 +208,7 @@ class Hypothesis(Claim):
         return cause.id in ("release.x", "release.y") and rows.starts and rows.times[0] == 0
 
     def _is_typed(self, cause: Cause, factors: bool = True) -> bool:
-        """Return whether a person may have typed a number, or the factor by which a rate differs from the scene's.
-
-        The steps of a program may move its number by as much as the tolerance allows.
-        """
+        """Return whether a person may have typed a number, or the factor by which a rate differs from the scene's."""
         value = self.reading.value(cause)
         doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
         if cause.stage == "integrator":
@@ -219,14 +216,12 @@ class Hypothesis(Claim):
             return self.reading.program.kind != "sphere" and self._divides(value, doubt)
         if cause.id in LIKE_A_DRIFT and self._steps_roughly:
             return False
-        scene = float(getattr(self.case.right, cause.free))
-        widest = doubt * max(1.0, self.case.allowed_m / self.rest)
-        for within in (doubt, widest):
-            # what may be the scene's own number is no number that somebody typed
-            if abs(value - scene) > within and has_few_digits(value, within):
-                return True
-        factor = factors and cause.free == "rate"
-        return factor and has_few_digits(value / scene, doubt / abs(scene), FACTOR_DIGITS)
+        if has_few_digits(value, doubt):
+            return True
+        if not factors or cause.free != "rate":
+            return False
+        scene = self.case.right.rate
+        return has_few_digits(value / scene, doubt / abs(scene), FACTOR_DIGITS)
 
     @property
     def _steps_roughly(self) -> bool:

@@ -102,6 +102,53 @@ def test_what_is_hardly_needed_is_not_certain() -> None:
     assert "site.latitude" not in found.words
 
 
+def test_a_number_that_may_be_the_scene_s_own_is_not_certain() -> None:
+    """A g of many digits that moves the bob by little more than the tolerance, and on average by less."""
+    found = explained(rows("site.gravity=9.80665024681357"))
+    assert not found.agrees and found.explanation.causes != ()
+    assert "site.gravity" not in found.words
+
+
+def test_a_model_that_moves_the_bob_by_less_than_the_tolerance_is_not_told() -> None:
+    """A linear model of a swing of 0.1 mrad: the solar day is wrong, and the model makes no difference."""
+    scene = paris("site.gravity_is=effective", "release.x=0.006", "release.y=0.008")
+    beta = 2 * math.pi / 86400 * math.sin(math.radians(48.846111))
+    omega = math.sqrt(9.80665 / 67 + beta**2)
+    swing = np.cos(omega * TIMES) + 1j * beta / omega * np.sin(omega * TIMES)
+    plane = (0.006 + 0.008j) * swing * np.exp(-1j * beta * TIMES)
+    columns = {"x": plane.real.copy(), "y": plane.imag.copy()}
+    found = told(scene, TIMES, columns, 1e-8)
+    assert "solar_day" in found.words
+    assert not {"linear_g", "as_if.linear_g"} & {cause.id for cause in found.explanation.causes}
+
+
+def irregular(size_m: float) -> np.ndarray:
+    """Return errors of x and y in m that no motion makes, shape (rows, 2)."""
+    row = np.arange(len(TIMES))
+    errors = size_m * np.column_stack([np.sin(1.7 * row * row), np.cos(2.3 * row * row)])
+    errors[0] = 0.0
+    return np.asarray(errors)
+
+
+@pytest.mark.parametrize(
+    ("size_m", "gravity"), [(1e-7, "9.8066507123456"), (3e-7, "9.8066511123456")]
+)
+def test_a_step_error_is_not_certain_where_one_number_does_as_well(
+    size_m: float, gravity: str
+) -> None:
+    """A g of many digits beside an error within the tolerance."""
+    found = explained(rows(f"site.gravity={gravity}") + irregular(size_m))
+    (either,) = found.explanation.causes
+    assert either.stage == "either"
+    assert {"site.gravity", "integrator_loose"} <= {*either.id.split("|")}
+
+
+def test_an_either_without_which_little_more_is_left_is_not_certain() -> None:
+    """A g of many digits whose effect is seven times that of an error within the tolerance."""
+    found = explained(rows("site.gravity=9.8066507123456") + irregular(3e-7))
+    assert [cause.stage for cause in found.explanation.causes] == ["as_if"]
+
+
 def test_normal_gravity_is_recognised() -> None:
     found = explained(rows("site.gravity=9.80967161366882"))
     assert stages(found) == {"gravity_normal": "input"}
