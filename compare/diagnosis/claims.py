@@ -177,7 +177,7 @@ class _Comparison:
         if not differing:
             return
         explained = self.best.explains or not self.best.untyped
-        needed = all(self.needs.get(cause.id, math.inf) >= NEEDED for cause in differing)
+        needed = all(self._need(cause) >= NEEDED for cause in differing)
         certain = self.best.is_sound and explained and needed
         yield from _either(differing, _different(self._alternatives), certain)
 
@@ -201,8 +201,9 @@ class _Comparison:
         return hedged(cause)
 
     def _need(self, cause: Deviation) -> float:
-        """Return how many times as much is left without a cause; 0 if that is not known."""
-        return self.needs.get(cause.id, 0.0)
+        """Return how many times as much is left without a cause."""
+        is_renamed = cause.id == _EFFECTIVE_G and cause.id not in self.needs
+        return self.needs[_WITHOUT_CHANGE if is_renamed else cause.id]
 
     def _names_the_step(self, cause: Deviation) -> bool:
         """Return whether the method of a step is known: its length is typed, and it leaves rounding."""

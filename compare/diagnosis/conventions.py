@@ -432,10 +432,12 @@ class _ReleasePassage:
     rows: FileRows
 
 
-def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> FileRows:
+def shifted(
+    rows: FileRows, release: Array, frequency: float, length: float, in_order: bool
+) -> FileRows:
     """Find a clock that is off by a few rows: the fitted motion passes the release then.
 
-    The rows may be in order or reversed.
+    Unless they are known to be in order, the rows may be reversed.
     """
     if not frequency or len(rows.times) < 12:
         return rows
@@ -443,7 +445,8 @@ def shifted(rows: FileRows, release: Array, frequency: float, length: float) -> 
     speed = complex(release[3], release[4])
     spacing_s = float(np.median(np.diff(rows.times)))
     passages: list[_ReleasePassage] = []
-    for ordered in (rows, _reversed(rows)):
+    orders = [rows] if in_order else [rows, _reversed(rows)]
+    for ordered in orders:
         plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
         fit = fit_phasors(ordered.times, plane, frequency)
         if fit is None or fit.residual > 1e-2 * abs(start):

@@ -147,7 +147,8 @@ class KnownScene:
         rows = rounded_clock(rows, self.frequency)
         if rows.starts or not {"rows_late", "rows_early"}.isdisjoint(without):
             return rows
-        return shifted(rows, self.start, self.frequency, self.right.length)
+        in_order = "rows_reversed" in without
+        return shifted(rows, self.start, self.frequency, self.right.length, in_order)
 
     def case(self, rows: FileRows, allowed_m: float, most: int = 0) -> FileCase:
         """Return what is to be explained of rows, of which some are taken if they are more than `most`."""

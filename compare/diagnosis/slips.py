@@ -26,7 +26,7 @@ from reference.numbers.precision import DOUBLE, Array
 
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import by_differences, gauss_newton, solved
-from .case import Explanation, FileCase, FileRows
+from .case import Explanation, FileCase, FileRows, largest
 from .claims import tested
 from .families import windows
 from .hypotheses import Claim
@@ -70,11 +70,14 @@ def of_slip(
     best = _simplest(list(_claims(case.in_the_plane(), rows, constants)))
     if best is None:
         return None
-    proposed = Deviation("slip", best.sentence, stage="model")
-    if tested(best, proposed, without_m) is not proposed:
+    proposed = Deviation("slip", f"has a slip: {best.sentence}", best.size_m, "model")
+    cause = tested(best, proposed, without_m)
+    if cause is None:
         return None
     explanation = best.case.explanation((), best.left, best.price)
-    return replace(explanation, slip=proposed.text)
+    if cause is proposed:
+        return replace(explanation, slip=f"{best.sentence[0].upper()}{best.sentence[1:]}.")
+    return replace(explanation, causes=(cause,))
 
 
 def _simplest(claims: Sequence[_SlipClaim]) -> _SlipClaim | None:
@@ -359,14 +362,22 @@ class _SlipClaim(Claim):
         return 2 * len(self.slip.coefficients) + (self.slip.kind == "linear")
 
     @property
+    def size_m(self) -> float:
+        """The largest distance in m by which it moves the bob."""
+        right = self.slip.with_errors([0.0] * len(self.slip.coefficients))
+        start = np.concatenate([self.case.rows.plane[0], self.velocity])
+        times = self.case.rows.times
+        return largest(self.slip.rows(start, times) - right.rows(start, times))
+
+    @property
     def sentence(self) -> str:
         """What is said of it."""
         k = self.slip.k
         model = "linear model" if self.slip.kind == "linear" else "model"
         reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity"
         terms = "; ".join(map(self._term, self.slip.places))
-        work = " The difference does work, as no Coriolis force does." if self._does_work() else ""
-        return f"Its accelerations differ from the {model}'s{reading}: {terms}.{work}"
+        work = ". The difference does work, as no Coriolis force does" if self._does_work() else ""
+        return f"its accelerations differ from the {model}'s{reading}: {terms}{work}"
 
     def _term(self, place: _Place) -> str:
         """Return what is said of a term."""
