@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mistakes import told
+from wild_programs import read_in
 
 from compare.diagnosis.hypotheses import has_few_digits
 from reference import Scene, load_scene, trajectory
@@ -146,6 +147,28 @@ def test_an_either_without_which_little_more_is_left_is_not_certain() -> None:
     """A g of many digits whose effect is seven times that of an error within the tolerance."""
     found = explained(rows("site.gravity=9.8066507123456") + irregular(3e-7))
     assert [cause.stage for cause in found.explanation.causes] == ["as_if"]
+
+
+def test_a_map_of_a_column_that_is_hardly_needed_is_not_certain() -> None:
+    """A y that is too large by 4e-6 of itself, beside an error within the tolerance."""
+    right = rows()
+    found = explained(right * [1.0, 1 + 4e-6] + irregular(4e-7))
+    assert not found.agrees and found.words == set()
+
+
+def test_axes_that_the_first_row_alone_shows_are_not_certain() -> None:
+    """x and y under each other's names, and an unknown error as large as the difference that this makes."""
+    wave = 0.15 * np.sin(0.05 * TIMES)
+    found = explained(rows()[:, ::-1] + np.column_stack([wave, -wave]))
+    assert found.words == set()
+
+
+def test_a_slip_that_does_not_predict_is_not_certain() -> None:
+    """A public program with a wrong sign, whose motion grows: of what odeint leaves, each swing shows more."""
+    scene, times, columns = read_in("w28")
+    found = told(scene, times, columns, 1e-8)
+    assert found.explanation.slip == ""
+    assert stages(found) == {"as_if.slip": "as_if"}
 
 
 def test_normal_gravity_is_recognised() -> None:
