@@ -15,7 +15,7 @@ from ..candidates.candidate import Deviation
 from .advice import advice
 from .phasors import ComplexArray, sinc
 from .programs import NAMES, Program, SphericalPendulum
-from .thresholds import FINEST, ROUNDED
+from .thresholds import FINEST, RIVAL, ROUNDED
 
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
@@ -223,7 +223,7 @@ class FileCase:
     @property
     def floor(self) -> float:
         """Root mean square in m below which no error needs a cause."""
-        return max(self.rows.noise, self.allowed_m / 3)
+        return max(self.rows.noise, self.allowed_m / RIVAL)
 
     @property
     def resolution(self) -> float:

@@ -126,7 +126,7 @@ def explanation_of(
     reported, needs = worth_saying(best)
     if not reported.leaves_little or not reported.is_harmless:
         return nothing(case), likeliest
-    comparison = _Comparison(best, rivals_of(best, hypotheses), reported, needs)
+    comparison = _AmongRivals(best, rivals_of(best, hypotheses), reported, needs)
     causes = tuple(comparison.causes())
     explanation = case.explanation(causes, reported.left, reported.price)
     model = _model(case, reported, causes)
@@ -151,7 +151,7 @@ def _model(case: FileCase, best: Hypothesis, causes: Sequence[Deviation]) -> Nam
 
 
 @dataclass(frozen=True, eq=False)
-class _Comparison:
+class _AmongRivals:
     """A hypothesis beside its rivals.
 
     Attributes:

@@ -273,7 +273,7 @@ def _with_best_conventions(file: _File, rows: FileRows) -> tuple[Explanation, Fi
 def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:
     """Return an explanation with the slip that explains what it leaves, or with what else the rows show."""
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
-    unknown = simple and best.corrected_m > max(file.allowed_m, 1.5 * rows.noise)
+    unknown = simple and not best.explains
     is_loose = any(cause.id.endswith("integrator_loose") for cause in best.causes)
     if best.slip or not (unknown or is_loose):
         return best

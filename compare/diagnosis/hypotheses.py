@@ -1,4 +1,6 @@
-"""What the tests of a claim measure: a proposed explanation that was run, of causes of a program or of another kind.
+"""A proposed explanation that was run, and what the tests of a claim measure of it.
+
+Causes of a program are one kind of explanation; other modules have further kinds.
 
 A `Claim` knows what it leaves of the rows, and answers what each test asks. `claims.py` decides by the answers.
 """

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from .case import AS_IF
-from .thresholds import OF_A_CHANGE
+from .thresholds import NEEDED, OTHER_STEP
 
-_STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
 _SAME = 1e-9  # relative difference of two inputs that count as one
 _STEP = "step"
 _Document = Mapping[str, Any]  # of a score, or of a convention or cause in it
@@ -124,7 +123,7 @@ def explain_change(
         return (), None
     left_m = max(old.left_m, new.left_m) + _unexplained_m(old.document, new.document)
     # a step of no name is known by what its error looks like, and leaves it
-    if left_m > OF_A_CHANGE * apart_m and not any(text.startswith("the step") for text in texts):
+    if NEEDED * left_m > apart_m and not any(text.startswith("the step") for text in texts):
         return (), None
     return texts, left_m
 
@@ -198,7 +197,7 @@ def _is_same(deviation: _Document, other: _Document) -> bool:
     old_value = other.get("value")
     if new_value is None or old_value is None:
         if _kind(deviation) == _kind(other) == _STEP:
-            return bool(1 / _STEPS < deviation["size_m"] / other["size_m"] < _STEPS)
+            return bool(1 / OTHER_STEP < deviation["size_m"] / other["size_m"] < OTHER_STEP)
         return bool(deviation["text"] == other["text"])
     uncertainty = sum(document.get("uncertainty") or 0.0 for document in (deviation, other))
     same = abs(new_value - old_value) <= uncertainty + _SAME * abs(new_value)

@@ -42,7 +42,6 @@ _FARTHEST = 0.5  # rad of the swing: the largest step
 _PROPOSED = 0.02  # of the mean square of the accelerations' errors: what terms leave that are run
 _MOST = 3  # terms that are run together
 _TRIED = 4  # proposals that are run
-_WORK = 0.2  # of |force| |velocity|: a force that does work
 _LOW = 0.3  # of the length: farther out, the force is not linear
 _TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
 _PLACES = tuple(itertools.product(range(2), range(len(_TERMS))))  # of a term: equation, and name
@@ -52,8 +51,6 @@ _SHORTEST = 16  # rows in the first of them
 _NEWTON = 8  # steps in one window
 _GAIN = 0.9  # of the residual: a step that leaves more is not taken
 _PARTS = 4  # of the rows
-_GROWN = 2.0  # how many times as far as in the first part a growing motion reaches in the last
-_FREELY = (0.5, 2.5)  # of g: range of a fall's mean acceleration, from row 0 to every other row
 
 
 def of_slip(
@@ -94,7 +91,7 @@ def _simplest(claims: Sequence[_SlipClaim]) -> _SlipClaim | None:
             best = claim
     for rival in claims:
         cheap = rival.price <= best.price and rival.rest <= RIVAL * best.rest
-        if cheap and rival.slip.places != best.slip.places:
+        if cheap and rival.force.places != best.force.places:
             return None
     return best
 
@@ -112,7 +109,7 @@ def _claims(case: FileCase, rows: FileRows, constants: Constants) -> Iterator[_S
     reading = min(constants, effective, key=lambda k: _rms(motion.errors(k)))
     for coefficients in _proposed(motion, reading):
         for kind in ("sphere", "linear"):
-            claim = _SlipClaim.fitted(case, _Slip(reading, kind, coefficients))
+            claim = _SlipClaim.fitted(case, _WrongForce(reading, kind, coefficients))
             if claim is not None:
                 yield claim
 
@@ -218,7 +215,7 @@ def _fit(state: Array, errors: Array, places: Sequence[_Place]) -> _Proposal:
 
 
 @dataclass(frozen=True)
-class _Slip:
+class _WrongForce:
     """A force with some wrong coefficients.
 
     Attributes:
@@ -243,7 +240,7 @@ class _Slip:
         slopes = (_model(nudges, self.k) - _model(-nudges, self.k)) / (2 * _NUDGE)
         return np.hstack([_model(np.zeros((4, 1)), self.k), slopes])
 
-    def with_errors(self, errors: Sequence[float]) -> _Slip:
+    def with_errors(self, errors: Sequence[float]) -> _WrongForce:
         """Return the force with other errors of the coefficients, in the order of `places`."""
         return replace(self, coefficients=dict(zip(self.coefficients, errors, strict=True)))
 
@@ -307,20 +304,20 @@ class _SlipClaim(Claim):
     """The claim that a program has a slip.
 
     Attributes:
-        slip: its force.
+        force: of the program.
         velocity: vx and vy at the first row in m/s.
     """
 
-    slip: _Slip
+    force: _WrongForce
     velocity: Array
 
     @classmethod
-    def fitted(cls, case: FileCase, slip: _Slip) -> _SlipClaim | None:
+    def fitted(cls, case: FileCase, force: _WrongForce) -> _SlipClaim | None:
         """Return the claim with coefficients and velocity fitted to the rows; None if there is no such motion."""
         times = case.rows.times
         first, second, third, *_ = case.rows.plane
         velocity = (4 * second - third - 3 * first) / (times[2] - times[0])
-        claim = cls(case, case.rows.positions, slip, velocity)
+        claim = cls(case, case.rows.positions, force, velocity)
         for count in windows(times - times[0], _WINDOWS, _SHORTEST, 2 * _SHORTEST):
             claim = claim._fitted_to(count)
         return claim if math.isfinite(claim.rest) else None
@@ -329,28 +326,28 @@ class _SlipClaim(Claim):
         """Return the claim with its numbers fitted to the first `count` rows."""
         times = self.case.rows.times
         plane = self.case.rows.plane
-        numbers = np.array([*self.slip.coefficients.values(), *self.velocity])
+        numbers = np.array([*self.force.coefficients.values(), *self.velocity])
 
         def motion(numbers: Array, count: int) -> Array:
-            slip = self.slip.with_errors(numbers[:-2].tolist())
-            return slip.rows(np.concatenate([plane[0], numbers[-2:]]), times[:count])
+            force = self.force.with_errors(numbers[:-2].tolist())
+            return force.rows(np.concatenate([plane[0], numbers[-2:]]), times[:count])
 
         def rows_with(numbers: Array) -> Array:
             return motion(numbers, count).ravel()
 
-        speed = math.sqrt(abs(self.slip.k.pull[2])) * float(np.abs(plane).max())
-        sizes = [abs(number) for number in self.slip.coefficients.values()]
+        speed = math.sqrt(abs(self.force.k.pull[2])) * float(np.abs(plane).max())
+        sizes = [abs(number) for number in self.force.coefficients.values()]
         nudges = _NUDGE * np.array([*sizes, speed, speed])
         model = by_differences(rows_with, plane[:count].ravel(), nudges)
         numbers, _ = gauss_newton(model, numbers, steps=_NEWTON, gain=_GAIN)
         left = plane - motion(numbers, len(times))
-        slip = self.slip.with_errors(numbers[:-2].tolist())
-        return replace(self, left=left, slip=slip, velocity=numbers[-2:])
+        force = self.force.with_errors(numbers[:-2].tolist())
+        return replace(self, left=left, force=force, velocity=numbers[-2:])
 
     @property
     def free_numbers(self) -> int:
         """Its coefficients, and the velocity at the first row."""
-        return len(self.slip.coefficients) + 2
+        return len(self.force.coefficients) + 2
 
     def foreseen(self, count: int) -> Array:
         """Return what is left in m if the numbers are fitted to the first `count` rows."""
@@ -359,23 +356,23 @@ class _SlipClaim(Claim):
     @property
     def price(self) -> int:
         """Two for each coefficient, and one for a linear model."""
-        return 2 * len(self.slip.coefficients) + (self.slip.kind == "linear")
+        return 2 * len(self.force.coefficients) + (self.force.kind == "linear")
 
     @property
     def size_m(self) -> float:
         """The largest distance in m by which it moves the bob."""
-        right = self.slip.with_errors([0.0] * len(self.slip.coefficients))
+        right = self.force.with_errors([0.0] * len(self.force.coefficients))
         start = np.concatenate([self.case.rows.plane[0], self.velocity])
         times = self.case.rows.times
-        return largest(self.slip.rows(start, times) - right.rows(start, times))
+        return largest(self.force.rows(start, times) - right.rows(start, times))
 
     @property
     def sentence(self) -> str:
         """What is said of it."""
-        k = self.slip.k
-        model = "linear model" if self.slip.kind == "linear" else "model"
+        k = self.force.k
+        model = "linear model" if self.force.kind == "linear" else "model"
         reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity"
-        terms = "; ".join(map(self._term, self.slip.places))
+        terms = "; ".join(map(self._term, self.force.places))
         work = ". The difference does work, as no Coriolis force does" if self._does_work() else ""
         return f"its accelerations differ from the {model}'s{reading}: {terms}{work}"
 
@@ -384,8 +381,8 @@ class _SlipClaim(Claim):
         equation, term = place
         word = list(_TERMS)[term]
         name = "the constant term" if word == "1" else f"the term with {word}"
-        right = float(self.slip.linear[place])
-        value = f"{right + self.slip.coefficients[place]:.6g} {_TERMS[word]}"
+        right = float(self.force.linear[place])
+        value = f"{right + self.force.coefficients[place]:.6g} {_TERMS[word]}"
         where = f"in the equation of {'xy'[equation]}, {name}"
         return f"{where} is {value} where the model has {right + 0.0:.6g}"
 
@@ -395,10 +392,10 @@ class _SlipClaim(Claim):
         velocities = np.gradient(self.case.rows.plane, times, axis=0).T
         basis = np.vstack([np.ones(len(times)), self.case.rows.plane.T, velocities])
         errors = np.zeros((2, len(times)))
-        for (equation, term), coefficient in self.slip.coefficients.items():
+        for (equation, term), coefficient in self.force.coefficients.items():
             errors[equation] += coefficient * basis[term]
         power = np.mean(np.sum(errors * velocities, axis=0))
-        return bool(abs(power) > _WORK * 2 * _rms(errors) * _rms(velocities))
+        return bool(RIVAL * abs(power) > 2 * _rms(errors) * _rms(velocities))
 
 
 def falls(rows: FileRows, right: Program) -> str:
@@ -408,8 +405,8 @@ def falls(rows: FileRows, right: Program) -> str:
     for name, displacement in zip("xy", displacements.T, strict=True):
         pulls = np.abs(2 * displacement / time**2) / right.g
         distance = float(abs(displacement[-1:]).sum())
-        free = ((pulls > _FREELY[0]) & (pulls < _FREELY[1])).all()
-        if free and distance > _GROWN * right.length:
+        free = ((pulls > 1 / RIVAL) & (pulls < RIVAL)).all()
+        if free and distance > RIVAL * right.length:
             fell = f"Its {name} falls by {distance:.3g} m in {time[-1]:.3g} s"
             return (
                 f"{fell}, as a body does that no cord holds: "
@@ -424,7 +421,7 @@ def growth(rows: FileRows) -> str:
         return ""
     parts = np.array_split(np.arange(len(rows.times)), _PARTS)
     reach = np.array([float(np.hypot(*rows.plane[part].T).max()) for part in parts])
-    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > _GROWN * reach[0]:
+    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > RIVAL * reach[0]:
         return ""
     between = float(rows.times[parts[-1]].mean() - rows.times[parts[0]].mean())
     fold = between / math.log(reach[-1] / reach[0])

@@ -29,6 +29,7 @@ from ..phasors import FixedStepMethod
 from ..programs import Program
 from ..readings import CauseReading
 from ..stepped import LONGEST, Steps, step_cause
+from ..thresholds import RIVAL
 
 # how a cause follows the scene; the end of its sentence
 _RULE = ""
@@ -40,7 +41,8 @@ _INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
 _WIDE = 2.0
 _WHOLE = 1e-3  # of a number of steps: how far it may be from a whole number
 _TRIED = 30  # readings of a family that are run
-EQUAL = 0.35  # decades by which a reading that explains all files may be dearer than the cheapest
+# decades by which a reading that explains all files may be dearer than the cheapest
+EQUAL = math.log10(RIVAL)
 
 
 @dataclass(frozen=True)

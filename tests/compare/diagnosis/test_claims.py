@@ -205,3 +205,22 @@ def test_a_change_explains_what_lies_between_the_versions() -> None:
     old, new = version(0.0, 1e-6), version(1e-3, 2e-4)
     assert explain_change(old, version(1e-3, 1e-5), 1e-3, math.inf)[0] != ()
     assert explain_change(old, new, 1e-3, math.inf) == ((), None)
+
+
+def test_a_step_that_errs_about_as_much_is_the_same() -> None:
+    from compare.diagnosis import Version, explain_change
+
+    def version(size_m: float) -> Version:
+        text = "your program has a step error"
+        cause = {"id": "integrator_loose", "text": text, "size_m": size_m, "value": None}
+        document = {
+            "conventions": [],
+            "causes": [cause],
+            "slip": None,
+            "corrected": {"max_error_m": 0.0},
+        }
+        return Version(document, size_m)
+
+    assert explain_change(version(1e-3), version(1.8e-3), 1e-3, math.inf)[0] == ()
+    (change,) = explain_change(version(1e-3), version(2.2e-3), 1e-3, math.inf)[0]
+    assert change.startswith("the step")
