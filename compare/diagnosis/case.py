@@ -17,6 +17,7 @@ from .phasors import ComplexArray, sinc
 from .programs import NAMES, Program, SphericalPendulum
 from .thresholds import FINEST, RIVAL, ROUNDED
 
+_SLOWEST = 1e-6  # rad/s: size of the rotation rate where there is none
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
 # conventions that a model may go with
@@ -167,22 +168,22 @@ class Explanation:
         """Yield what is left once all is put right, or that nothing is known."""
         # which the rounding of a file, say, may be by itself
         enough = self.corrected_m <= self.allowed_m
-        mended = self.causes or any(
-            enough or convention.id not in UNCORRECTED for convention in self.conventions
-        )
+        corrected = [part for part in self.conventions if enough or part.id not in UNCORRECTED]
+        mended = self.causes or corrected
         if not (mended and math.isfinite(self.corrected_m)):
             if not self.slip:
                 yield "No mistake known to foucault explains the error."
             return
         these = "this" if len(self.causes or self.conventions) == 1 else "all this"
-        share, rounding = self.corrected_m / self.allowed_m, self.allowed_m / 1000
         # a smaller rest is rounding, and not the same on every processor
-        left = (
-            f"{self.corrected_m:.2g}"
-            if self.corrected_m > rounding
-            else f"less than {rounding:.1g}"
-        )
-        beyond = f", {share:.2g} tolerances: no known mistake explains them" if share > 1 else ""
+        rounding_m = self.allowed_m / 1000
+        left = f"less than {rounding_m:.1g}"
+        if self.corrected_m > rounding_m:
+            left = f"{self.corrected_m:.2g}"
+        tolerances = self.corrected_m / self.allowed_m
+        beyond = ""
+        if tolerances > 1:
+            beyond = f", {tolerances:.2g} tolerances: no known mistake explains them"
         yield f"With {these} put right, {left} m are left{beyond}."
 
 
@@ -239,9 +240,8 @@ class FileCase:
     def released(self) -> bool:
         """True if row 0 is the release to its last digit, so that neither its place nor its time is off."""
         off = np.abs(self.rows.positions[0, :2] - (self.right.x, self.right.y)).max()
-        return bool(
-            self.rows.times[0] == 0 and off <= 2 * self.rows.noise + EXACT * self.right.length
-        )
+        same = 2 * self.rows.noise + EXACT * self.right.length
+        return bool(self.rows.times[0] == 0 and off <= same)
 
     @property
     def pull(self) -> float:
@@ -251,29 +251,31 @@ class FileCase:
     @property
     def scales(self) -> Array:
         """Sizes of the numbers of theta, in the order of `NAMES`."""
-        length, rate, swing = (
-            self.right.length,
-            max(abs(self.right.rate), 1e-6),
-            math.sqrt(self.pull),
-        )
-        return np.array(
-            [
-                *[rate] * 3,
-                *[self.pull] * 3,
-                swing,
-                *[length] * 2,
-                *[length * swing] * 2,
-                length,
-                1.0,
-                1.0,
-            ]
-        )
+        length = self.right.length
+        rate = max(abs(self.right.rate), _SLOWEST)
+        swing = math.sqrt(self.pull)
+        sizes = {
+            "turn_x": rate,
+            "turn_y": rate,
+            "turn_z": rate,
+            "pull_x": self.pull,
+            "pull_y": self.pull,
+            "pull_z": self.pull,
+            "drag": swing,
+            "x": length,
+            "y": length,
+            "vx": length * swing,
+            "vy": length * swing,
+            "length": length,
+            "gradient": 1.0,
+            "point_mass": 1.0,
+        }
+        return np.array([sizes[name] for name in NAMES])
 
     def part(self, count: int) -> FileCase:
         """Return the case of the first `count` rows."""
-        rows = replace(
-            self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count]
-        )
+        times = self.rows.times[:count]
+        rows = replace(self.rows, times=times, positions=self.rows.positions[:count])
         return replace(self, rows=rows, truth=self.truth[:count])
 
     def in_the_plane(self) -> FileCase:
@@ -320,7 +322,8 @@ class FileCase:
 
     def positions(self, program: Program) -> Array:
         """Return what a program writes, in the rows' columns, shape (rows, 2 or 3)."""
-        times, columns = self.rows.times, self.rows.positions.shape[1]
+        times = self.rows.times
+        columns = self.rows.positions.shape[1]
         if program.kind == "sphere":
             pendulum, theta = self.pendulum_of(program)
             return pendulum.rows(theta, times, columns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ..candidates.candidate import Deviation
 from .case import FileCase, NamedModel, largest, rms
@@ -36,13 +36,18 @@ MODELS = {
     ),
 }
 TITLES = {
-    "linear_g": "the linear two-dimensional model", "linear_in_angle": "the model linear in the angle",
-    "no_centrifugal": "no centrifugal force (g effective)", "effective_gravity": "g effective",
+    "linear_g": "the linear two-dimensional model",
+    "linear_in_angle": "the model linear in the angle",
+    "no_centrifugal": "no centrifugal force (g effective)",
+    "effective_gravity": "g effective",
     "uniform_gravity": "no change of the centrifugal force along the swing",
-    "no_tilt": "no horizontal centrifugal force", "point_mass": "gravity of a point mass",
-    "sphere": "a spherical Earth", "mean_sphere": "a spherical Earth",
-    "turned_plane": "a plane turned by hand", "turned_plane_sign": "a plane turned by hand, the wrong way",
-}  # fmt: skip
+    "no_tilt": "no horizontal centrifugal force",
+    "point_mass": "gravity of a point mass",
+    "sphere": "a spherical Earth",
+    "mean_sphere": "a spherical Earth",
+    "turned_plane": "a plane turned by hand",
+    "turned_plane_sign": "a plane turned by hand, the wrong way",
+}
 
 
 def readings_of(case: FileCase, stepped: bool = False) -> list[CauseReading]:
@@ -54,25 +59,20 @@ def readings_of(case: FileCase, stepped: bool = False) -> list[CauseReading]:
     """
     fits = list(fits_of(case))
 
-    def causes(kind: str) -> list[Cause]:
-        return [
-            cause for cause in causes_of(case, kind) if not stepped or cause.stage != "integrator"
-        ]
+    def catalogue(kind: str) -> list[Cause]:
+        every = causes_of(case, kind)
+        return [cause for cause in every if not stepped or cause.stage != "integrator"]
 
-    run = ranked(case, readers_of(case, fits), causes)
+    run = ranked(case, readers_of(case, fits), catalogue)
     if not run:
         return []
     # below the tolerance a search does not look any further: if there is more to be found, it is told to
     least = min(fit.rest for fit in fits)
     finest = max(case.resolution, least)
     if min(reading.rest for reading in run) > RIVAL * finest:
-        run += ranked(case, readers_of(case, fits, finest), causes)
-    catalogue = {kind: causes(kind) for kind in EXTRA}
-    run += [
-        reading
-        for one in run[:LIKELIEST]
-        for reading in same_motions(case, one, catalogue[one.program.kind])
-    ]
+        run += ranked(case, readers_of(case, fits, finest), catalogue)
+    for reading in run[:LIKELIEST]:
+        run += same_motions(case, reading, catalogue(reading.program.kind))
     return run
 
 
@@ -130,20 +130,13 @@ def ranked(
         tried: number of readings of a family that are run.
     """
     run: list[CauseReading] = []
-    numbers = case.rows.plane[int(case.released) :].size  # as many that are fitted make any rows
     for reader in sorted(readers, key=lambda reader: reader.fit.rest):
-        causes = causes_of(reader.right.kind)
         least = min(map(_price, run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
-        likely = reader.readings(causes, most)
-        likely = [
-            reading
-            for reading in likely
-            if sum(bool(cause.free) for cause in reading.causes) < numbers
-        ][:tried]
-        likely += [
-            reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes
-        ]
+        likely = reader.readings(causes_of(reader.right.kind), most)
+        likely = [reading for reading in likely if _is_determined(case, reading)][:tried]
+        for reading in likely[:2]:
+            likely += [reader.without(reading, [cause]) for cause in reading.causes]
         # the distance from the fit is linear in theta: what counts is the program itself
         for reading in likely:
             leaves = rms(case.left(reading.program))
@@ -154,6 +147,12 @@ def ranked(
     near = min(map(_price, run)) + NEAR
     run = [polished(case, reading) if _price(reading) <= near else reading for reading in run]
     return sorted(run, key=_price)
+
+
+def _is_determined(case: FileCase, reading: CauseReading) -> bool:
+    """Return whether the rows have more numbers than are fitted: as many make any rows."""
+    fitted = sum(bool(cause.free) for cause in reading.causes)
+    return fitted < case.rows.plane[int(case.released) :].size
 
 
 def polished(case: FileCase, reading: CauseReading) -> CauseReading:
@@ -195,36 +194,77 @@ def sentences(case: FileCase, reading: CauseReading) -> Iterator[tuple[str, str]
 
 def sized(case: FileCase, reading: CauseReading) -> Iterator[Deviation]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
-    kind = reading.program.kind
-    changes: list[tuple[str, Cause | None]] = [
-        (cause.stage, cause) for cause in reading.causes if cause not in DRIFT
-    ]
-    if kind != "sphere":
-        changes.append(("model", None))
-    program, before = case.right, case.truth
-    for stage, cause in sorted(changes, key=lambda change: ORDER.index(change[0])):
-        value = shift = uncertainty = None
-        if cause is None:
-            (word, text), program = MODELS[kind], replace(program, kind=kind)
-        else:
-            word, text, program = cause.id, cause.text, cause.change(program)
-            if cause.free:
-                value = reading.value(cause)
-                program = program.changed(**{cause.free: value})
-                shift = value - float(getattr(case.right, cause.free))
-                uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
-                text = cause.sentence(value, uncertainty, case.right)
+    parts: list[_Part] = [_CausePart(cause) for cause in reading.causes if cause not in DRIFT]
+    if reading.program.kind != "sphere":
+        parts.append(_ModelPart(reading.program.kind))
+    program = case.right
+    before = case.truth
+    for part in sorted(parts, key=lambda part: ORDER.index(part.stage)):
+        program = part.applied(program, reading)
         after = case.positions(program)
-        size = largest(after - before)
-        # another cause, put right before it, may have made it small
-        if cause is not None and size <= case.enough:
-            without = reading.reader.without(reading, [cause]).program
-            size = largest(case.positions(reading.program) - case.positions(without))
-        yield Deviation(word, text, size, stage, value, shift, uncertainty)
+        yield part.deviation(case, reading, largest(after - before))
         before = after
     if DRIFT[0] in reading.causes:
-        size = largest(case.positions(reading.program) - before)
-        yield Deviation(DRIFT[0].id, LOOSE, size, "integrator")
+        size_m = largest(case.positions(reading.program) - before)
+        yield Deviation(DRIFT[0].id, LOOSE, size_m, "integrator")
+
+
+@dataclass(frozen=True)
+class _ModelPart:
+    """The model of a reading, as one of the things that it says.
+
+    Attributes:
+        kind: of its program.
+    """
+
+    kind: str
+    stage = "model"
+
+    def applied(self, program: Program, reading: CauseReading) -> Program:
+        """Return a program of this model."""
+        return replace(program, kind=self.kind)
+
+    def deviation(self, case: FileCase, reading: CauseReading, size_m: float) -> Deviation:
+        """Return what is said of it; it moves the bob by a size."""
+        word, text = MODELS[self.kind]
+        return Deviation(word, text, size_m, self.stage)
+
+
+@dataclass(frozen=True)
+class _CausePart:
+    """A cause of a reading, as one of the things that it says."""
+
+    cause: Cause
+
+    @property
+    def stage(self) -> str:
+        """Its stage."""
+        return self.cause.stage
+
+    def applied(self, program: Program, reading: CauseReading) -> Program:
+        """Return a program with the cause, and the number that it has in the reading."""
+        changed = self.cause.change(program)
+        if not self.cause.free:
+            return changed
+        return changed.changed(**{self.cause.free: reading.value(self.cause)})
+
+    def deviation(self, case: FileCase, reading: CauseReading, size_m: float) -> Deviation:
+        """Return what is said of it; beside the causes before it, it moves the bob by a size."""
+        cause = self.cause
+        if size_m <= case.enough:
+            # another cause, put right before it, may have made it small
+            without = reading.reader.without(reading, [cause]).program
+            size_m = largest(case.positions(reading.program) - case.positions(without))
+        if not cause.free:
+            return Deviation(cause.id, cause.text, size_m, cause.stage)
+        value = reading.value(cause)
+        shift = value - float(getattr(case.right, cause.free))
+        uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
+        text = cause.sentence(value, uncertainty, case.right)
+        return Deviation(cause.id, text, size_m, cause.stage, value, shift, uncertainty)
+
+
+_Part = _ModelPart | _CausePart
 
 
 def model_of(
@@ -233,12 +273,12 @@ def model_of(
     """Return the model that causes make up; None if one of them is no simplification with a name."""
     words = [cause.id for cause in causes]
     if kind != "sphere":
-        words = [MODELS[kind][0], *(word for word in words if word != MODELS[kind][0])]
+        model, _ = MODELS[kind]
+        words = [model, *(word for word in words if word != model)]
     if not words or any(word not in TITLES for word in words):
         return None
-    titles = (
-        TITLES
-        if right.gravity_reading != "effective"
-        else TITLES | {"no_centrifugal": TITLES["uniform_gravity"]}
-    )
-    return NamedModel("+".join(words), ", ".join(titles[word] for word in words), exact, costs)
+    titles = dict(TITLES)
+    if right.gravity_reading == "effective":
+        titles["no_centrifugal"] = TITLES["uniform_gravity"]
+    text = ", ".join(titles[word] for word in words)
+    return NamedModel("+".join(words), text, exact, costs)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -28,6 +28,7 @@ ENOUGH = 5000  # combinations that are tried
 BEAM = 20  # combinations that are kept of each size
 ASIDE = 5  # and beside them, of those that leave least
 MOST = 5  # causes at most
+_MOST_NUMBERS = 3  # that are fitted at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
 PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
@@ -91,37 +92,15 @@ class Reader:
     def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[CauseReading]:
         """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
         nothing = self._judged((), self.right)
-        best, beam = [nothing], [nothing]
-        seen: set[frozenset[int]] = set()
-        least, tried = min(nothing.score, most), 0
-        # no combination leaves less than the fit
-        bound = self.scored((), self.right, self.fit.rest).score
+        search = _Search(self, causes, min(nothing.score, most))
+        best = [nothing]
+        beam = [nothing]
         for _ in range(MOST):
-            longer: list[CauseReading] = []
-            for reading in beam:
-                groups = {cause.group for cause in reading.causes}
-                cost = bound + sum(cause.cost for cause in reading.causes)
-                for cause in causes:
-                    key = frozenset((*map(id, reading.causes), id(cause)))
-                    if cost + cause.cost > least or cause.group in groups or key in seen:
-                        continue
-                    tried += 1
-                    if tried > ENOUGH:
-                        break
-                    # whose first step depends on the program before it
-                    if cause.stage != "integrator":
-                        seen.add(key)
-                    extended = self.with_cause(reading, cause)
-                    if extended is not None:
-                        longer.append(extended)
-                        least = min(least, extended.score)
-            longer.sort(key=lambda reading: reading.score)
+            longer = search.longer(beam)
             best += longer[:BEAM]
             # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
-            beam = [
-                *longer[:BEAM],
-                *sorted(longer[BEAM:], key=lambda reading: reading.rest)[:ASIDE],
-            ]
+            others = sorted(longer[BEAM:], key=lambda reading: reading.rest)
+            beam = [*longer[:BEAM], *others[:ASIDE]]
             if not beam:
                 break
         best.sort(key=lambda reading: reading.score)
@@ -147,24 +126,33 @@ class Reader:
         for cause in reading.causes:
             if not cause.free or cause.stage == "integrator":
                 continue
-            value = reading.value(cause)
-            if cause.free == "rate" and abs(value + self.right.rate) <= SAME * abs(value):
-                sign = next(other for other in causes if other.id == "coriolis_sign")
-                together = tuple(sign if other is cause else other for other in reading.causes)
-                return self._judged(
-                    together, sign.change(reading.program.changed(rate=self.right.rate))
-                )
-            for other in causes:
-                if other.free or other.group != cause.group:
-                    continue
-                program = other.change(reading.program)
-                exact = float(getattr(program, cause.free))
-                if exact != value and abs(exact - value) <= SAME * abs(value):
-                    together = tuple(
-                        other if before is cause else before for before in reading.causes
-                    )
-                    return self._judged(together, program)
+            named = self._named(reading, cause, causes)
+            if named is not None:
+                return named
         return reading
+
+    def _named(
+        self, reading: CauseReading, cause: Cause, causes: Sequence[Cause]
+    ) -> CauseReading | None:
+        """Return a reading with a named cause in place of one with a number; None if none has its number."""
+
+        def with_other(other: Cause, program: Program) -> CauseReading:
+            together = tuple(other if each is cause else each for each in reading.causes)
+            return self._judged(together, program)
+
+        value = reading.value(cause)
+        same = SAME * abs(value)
+        if cause.free == "rate" and abs(value + self.right.rate) <= same:
+            sign = next(other for other in causes if other.id == "coriolis_sign")
+            return with_other(sign, sign.change(reading.program.changed(rate=self.right.rate)))
+        for other in causes:
+            if other.free or other.group != cause.group:
+                continue
+            program = other.change(reading.program)
+            exact = float(getattr(program, cause.free))
+            if exact != value and abs(exact - value) <= same:
+                return with_other(other, program)
+        return None
 
     def with_cause(self, reading: CauseReading, cause: Cause) -> CauseReading | None:
         """Return a reading with one more cause, its numbers fitted; None if no program can have it."""
@@ -177,63 +165,76 @@ class Reader:
         free = [part.free for part in together if part.free]
         if not free:
             return self._judged(together, program)
-        if len(free) > 3:
+        if len(free) > _MOST_NUMBERS:
             return None
         if program.method is not None and not program.step:
-            theta = reading.program.theta()
-            omega = math.sqrt(abs(theta[5])) or 1.0
-            square, drag = self._shown(reading.program)
-            guesses = (
-                program.method.first_step(-theta[5], square, theta[6], drag),
-                *(q / omega for q in PHASES),
-            )
-            tried = [
-                self._judged(together, program.changed(step=step)) for step in guesses if step > 0
-            ]
-            program = tried[first_least([reading.rest for reading in tried])].program
+            program = self._with_first_step(reading.program, together, program)
         goal = np.zeros(len(self._triangle))
         fitted, _ = adjusted(
             program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint
         )
         return self._judged(together, fitted)
 
+    def _with_first_step(
+        self, before: Program, together: tuple[Cause, ...], program: Program
+    ) -> Program:
+        """Return a program with the likeliest of a few steps.
+
+        Args:
+            before: the program without its method.
+            together: its causes.
+            program: with a method that has no step yet.
+        """
+        assert program.method is not None
+        theta = before.theta()
+        omega = math.sqrt(abs(theta[5])) or 1.0
+        square, drag = self._shown(before)
+        steps = [
+            program.method.first_step(-theta[5], square, theta[6], drag),
+            *(phase / omega for phase in PHASES),
+        ]
+        tried = [self._judged(together, program.changed(step=step)) for step in steps if step > 0]
+        return tried[first_least([reading.rest for reading in tried])].program
+
     def _shown(self, program: Program) -> tuple[float, float]:
         """Return ω² and the drag that the rows ask of a program, its release free: other numbers may stand for them."""
-        theta, free = program.theta(), list(self.fit.free)
+        theta = program.theta()
+        free = list(self.fit.free)
         columns = [free.index(i) for i in (5, 6, 9, 10) if i in free]
         change = best_change(self._triangle[:, columns], self._off(program))
         return -float(theta[5] + change[0]), float(theta[6] + change[1])
 
     def drifts(self, case: FileCase, program: Program) -> bool:
         """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
-        columns, free = len(self.fit.slopes) // len(case.rows.times), list(self.fit.free)
-        off = (case.left(program)[:, :columns] / math.sqrt(len(case.rows.times))).ravel()
-        pull, drag, enough = free.index(5), free.index(6), math.hypot(self.floor, self.fit.rest)
+        columns = len(self.fit.slopes) // len(case.rows.times)
+        left = case.left(program)[:, :columns] / math.sqrt(len(case.rows.times))
+        off = left.ravel()
 
-        def left(*numbers: int) -> float:
+        def rest(*numbers: int) -> float:
+            """Return what is left where some numbers of theta are fitted."""
             slopes = self.fit.slopes[: len(off), numbers]
             return float(np.linalg.norm(off - slopes @ best_change(slopes, off)))
 
-        return left(pull, drag) <= enough < min(left(pull), left(drag))
+        pull = self.fit.free.index(5)
+        drag = self.fit.free.index(6)
+        enough = math.hypot(self.floor, self.fit.rest)
+        return rest(pull, drag) <= enough < min(rest(pull), rest(drag))
 
     def uncertainty(self, reading: CauseReading, cause: Cause, resolution: float) -> float:
         """Return by how much a fitted number may be off: the residual over how the rows answer to it.
 
         A residual below the resolution, in m, is rounding and says nothing.
         """
-        value = reading.value(cause)
         nudge = _nudge(reading.program, cause.free)
-        moved = self._off(reading.program.changed(**{cause.free: value + nudge})) - self._off(
-            reading.program
-        )
+        nudged = reading.program.changed(**{cause.free: reading.value(cause) + nudge})
+        moved = self._off(nudged) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, resolution) / answer if answer else math.inf
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> CauseReading:
         off = float(np.linalg.norm(self._off(program)))
-        return self.scored(
-            together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf
-        )
+        rest = math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf
+        return self.scored(together, program, rest)
 
     def without(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Return a reading without some of its causes, the other fitted numbers as they were."""
@@ -250,12 +251,11 @@ class Reader:
         low = max(1.2 * self.least, 1e-3 * self.floor)
         score = math.inf
         if math.isfinite(rest):
-            score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(
-                max(rest, low) / low
-            )
-        return CauseReading(
-            together, program, rest, score + sum(cause.cost for cause in together), self
-        )
+            above = math.log10(max(rest, self.floor) / self.floor)
+            below = math.log10(max(rest, low) / low)
+            score = above + BELOW * below
+        score += sum(cause.cost for cause in together)
+        return CauseReading(together, program, rest, score, self)
 
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
@@ -267,6 +267,61 @@ class Reader:
         """The slopes with as many rows as there are numbers: products with it are as long as with them."""
         slopes = self.fit.slopes
         return np.asarray(np.linalg.qr(slopes, mode="r")) if np.isfinite(slopes).all() else slopes
+
+
+@dataclass
+class _Search:
+    """A search for combinations of causes.
+
+    Attributes:
+        reader: holds them against a fit.
+        causes: that are combined.
+        least: the least score so far.
+        tried: number of combinations that were tried.
+        seen: the combinations that were tried.
+    """
+
+    reader: Reader
+    causes: Sequence[Cause]
+    least: float
+    tried: int = 0
+    seen: set[frozenset[int]] = field(default_factory=set)
+
+    def longer(self, beam: Sequence[CauseReading]) -> list[CauseReading]:
+        """Return the readings with one more cause than those of a beam, the best first."""
+        readings = []
+        for reading in beam:
+            for cause in self.causes:
+                if not self._may_be_better(reading, cause):
+                    continue
+                self.tried += 1
+                if self.tried > ENOUGH:
+                    break
+                # whose first step depends on the program before it
+                if cause.stage != "integrator":
+                    self.seen.add(_key(reading, cause))
+                extended = self.reader.with_cause(reading, cause)
+                if extended is not None:
+                    readings.append(extended)
+                    self.least = min(self.least, extended.score)
+        return sorted(readings, key=lambda reading: reading.score)
+
+    def _may_be_better(self, reading: CauseReading, cause: Cause) -> bool:
+        """Return whether a reading with one more cause is new, and may have a score below the least so far."""
+        if any(part.group == cause.group for part in reading.causes):
+            return False
+        cost = self._bound + sum(part.cost for part in reading.causes)
+        return cost + cause.cost <= self.least and _key(reading, cause) not in self.seen
+
+    @cached_property
+    def _bound(self) -> float:
+        """The score of no cause that leaves as little as the fit: no combination leaves less."""
+        return self.reader.scored((), self.reader.right, self.reader.fit.rest).score
+
+
+def _key(reading: CauseReading, cause: Cause) -> frozenset[int]:
+    """Return what a combination is known by, whatever the order of its causes."""
+    return frozenset((*map(id, reading.causes), id(cause)))
 
 
 def adjusted(
@@ -298,8 +353,9 @@ def _nudge(program: Program, name: str) -> float:
 
 def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
     """Return whether a cause would undo another: no rotation leaves nothing to be said of the Coriolis force."""
-    words = {part.id for part in (*together, cause)}
-    groups = {part.group for part in (*together, cause)}
+    every = (*together, cause)
+    words = {part.id for part in every}
+    groups = {part.group for part in every}
     if "no_rotation" in words:
         return bool(groups & {"latitude", "frame", "coriolis", "turn"})
     return "no_coriolis" in words and bool(groups & {"frame", "turn"})
