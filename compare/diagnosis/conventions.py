@@ -19,7 +19,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from .case import FileRows, largest
-from .phasors import as_angles, fit_phasors, sinc
+from .phasors import ComplexArray, as_angles, fit_phasors, sinc
 
 # of the distance from the vertical: a row 0 nearer than this to the release is the release
 _NEAR = 2e-5
@@ -27,13 +27,21 @@ _FLAT = "gives z a constant: its bob does not rise as it swings"
 _SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
 _OFF = 1e-7  # of the cord: a larger change of the distance from the suspension is reported
 _SLIGHT = 1e-9  # of the cord: with a larger change than this, heights are ignored
+_NO_RISE = 1e-3  # of the bob's: heights that differ by less are constant
 _ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
 ROUGHLY = 0.03  # of the distance from the vertical: how far a release in another unit may be off
 _SINGLE = 1e-6  # of the span: rounding of times in single precision
+_ROUGH_FIT = 1e-2  # of the release's distance: what phasors may leave that show when a clock began
 _SHIFTS = 3  # rows by which a clock may be off
+_SHORTEST = 12  # rows that show a frequency
+_FIRST = 400  # rows that are used for it
+_UNFIT = 0.05  # of the distance from the vertical: what two phasors may leave of them
+_SAME_FREQUENCY = 0.1  # relative difference from the scene's, in the right unit of time
 _DECAYS = 0.1  # of its frequency: a swing that decays or grows faster shows no unit of time
-LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in ("cm", "mm", "km", "ft", "in")}
-TIMES_SAID = {unit: f"counts time in {LONG_NAMES[unit]}" for unit in ("min", "h", "ms", "d")}
+_UNITS_OF_LENGTH = ("cm", "mm", "km", "ft", "in")
+LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in _UNITS_OF_LENGTH}
+_UNITS_OF_TIME = ("min", "h", "ms", "d")
+TIMES_SAID = {unit: f"counts time in {LONG_NAMES[unit]}" for unit in _UNITS_OF_TIME}
 # order and signs by which a file's horizontal columns become the scene's: x of the scene first
 AXES_SAID = {
     ((0, 1), (1, 1)): ("", ""),
@@ -45,6 +53,8 @@ AXES_SAID = {
     ((1, 0), (1, -1)): ("axes_turned", "writes south as x and east as y"),
     ((1, 0), (-1, -1)): ("axes_turned", "writes south as x and west as y"),
 }
+_FEW = 20  # numbers that show no rounding
+_MOST = 13  # decimals or digits: numbers with as many are not rounded
 _PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
 # order of a file's columns by which its third becomes the vertical
 _VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
@@ -54,8 +64,10 @@ _AS_IN_SCENE: _Axes = ((0, 1), (1, 1))
 
 def _is_release(row: Array, release: Array, noise: float) -> bool:
     """Return whether a row is the release but for its rounding."""
-    size = max(float(np.hypot(release[0], release[1])), 1e-6 * float(np.abs(release).max()))
-    return bool(np.abs(row[:2] - release[:2]).max() <= _NEAR * size + 2 * noise)
+    distance = float(np.hypot(release[0], release[1]))
+    size = max(distance, 1e-6 * float(np.abs(release).max()))
+    off = np.abs(row[:2] - release[:2]).max()
+    return bool(off <= _NEAR * size + 2 * noise)
 
 
 def digits(rows: FileRows) -> FileRows:
@@ -63,29 +75,61 @@ def digits(rows: FileRows) -> FileRows:
     values = rows.positions[np.abs(rows.positions) > 0]
     if not len(values):
         return rows
-    size = float(np.abs(values).max())
-    exact = FileRows(rows.times, rows.positions, 4 * np.finfo(float).eps * size)
-    if len(values) < 20:
-        return exact
+    if len(values) < _FEW:
+        return _exact(rows, values)
+    return (
+        _with_few_decimals(rows, values)
+        or _with_single_precision(rows, values)
+        or _with_few_digits(rows, values)
+        or _exact(rows, values)
+    )
 
-    single_noise = size * float(np.finfo(np.float32).eps)
-    in_single = _in_single_precision(values)
-    decimals = next((n for n in range(13) if _same(np.round(values, n), values)), None)
-    if decimals is not None:
-        noise = 0.5 * 10.0**-decimals
-        least_noise = single_noise if in_single else 1e-12 * size
-        if not noise < least_noise:
-            text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
-            return rows.changed(Deviation("decimals", text, noise), noise=noise)
-    if in_single:
-        text = f"holds numbers in single precision, good to {single_noise:.1g} of its unit"
-        return rows.changed(Deviation("single_precision", text, single_noise), noise=single_noise)
-    count = next((n for n in range(3, 13) if _same(_with_digits(values, n), values)), None)
+
+def _exact(rows: FileRows, values: Array) -> FileRows:
+    """Return the rows as those of numbers in double precision."""
+    size = float(np.abs(values).max())
+    return FileRows(rows.times, rows.positions, 4 * np.finfo(float).eps * size)
+
+
+def _with_few_decimals(rows: FileRows, values: Array) -> FileRows | None:
+    """Return the rows as those of numbers with few decimals; None if they have more than their precision gives."""
+    decimals = next((n for n in range(_MOST) if _same(np.round(values, n), values)), None)
+    if decimals is None:
+        return None
+    size = float(np.abs(values).max())
+    least_noise = 1e-12 * size
+    if _in_single_precision(values):
+        least_noise = _single_noise(values)
+    noise = 0.5 * 10.0**-decimals
+    if noise < least_noise:
+        return None
+    text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
+    return rows.changed(Deviation("decimals", text, noise), noise=noise)
+
+
+def _with_single_precision(rows: FileRows, values: Array) -> FileRows | None:
+    """Return the rows as those of numbers in single precision; None if they are not."""
+    if not _in_single_precision(values):
+        return None
+    noise = _single_noise(values)
+    text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
+    return rows.changed(Deviation("single_precision", text, noise), noise=noise)
+
+
+def _with_few_digits(rows: FileRows, values: Array) -> FileRows | None:
+    """Return the rows as those of numbers with few digits; None if they have many."""
+    count = next((n for n in range(3, _MOST) if _same(_with_digits(values, n), values)), None)
     if count is None:
-        return exact
+        return None
+    size = float(np.abs(values).max())
     noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - count)
     text = f"prints {count} digits: no more than {noise:.1g} of its unit can be judged"
     return rows.changed(Deviation("digits", text, noise), noise=noise)
+
+
+def _single_noise(values: Array) -> float:
+    """Return the rounding of the largest of some numbers in single precision."""
+    return float(np.abs(values).max()) * float(np.finfo(np.float32).eps)
 
 
 def _same(rounded: Array, values: Array) -> bool:
@@ -131,7 +175,8 @@ def heights(rows: FileRows, length: float) -> FileRows:
         return rows
     offset = _offset_of_heights(rows, length)
     if offset:
-        text = f"has z {abs(offset):.6g} m too {'high' if offset > 0 else 'low'} in every row"
+        side = "high" if offset > 0 else "low"
+        text = f"has z {abs(offset):.6g} m too {side} in every row"
         moved = rows.positions - [0.0, 0.0, offset]
         rows = rows.changed(Deviation("z_offset", text, abs(offset)), positions=moved)
 
@@ -144,18 +189,25 @@ def heights(rows: FileRows, length: float) -> FileRows:
     )
     for order, counted in itertools.product(_VERTICALS, counts):
         plane = rows.positions[:, order[:2]]
-        column = rows.positions[:, order[2]] * counted.sign - counted.shift
-        square = plane[:, 0] ** 2 + plane[:, 1] ** 2
-        if (square >= length * length).any():
+        on_sphere = _on_sphere(plane, length)
+        if on_sphere is None:
             continue
-        on_sphere = -np.sqrt(length * length - square)
+        column = rows.positions[:, order[2]] * counted.sign - counted.shift
         if np.abs(column - on_sphere).max() > _ALIKE * length:
             continue
 
-        if float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere)):
+        if float(np.ptp(column)) < _NO_RISE * float(np.ptp(on_sphere)):
             return _flat(rows.changed(Deviation("z_constant", _FLAT)))
         return _with_heights(rows, order, counted, length)
     return _flat(rows)
+
+
+def _on_sphere(plane: Array, length: float) -> Array | None:
+    """Return the heights of a bob at x and y in m; None if the cord does not reach one of them."""
+    square = plane[:, 0] ** 2 + plane[:, 1] ** 2
+    if (square >= length * length).any():
+        return None
+    return np.asarray(-np.sqrt(length * length - square))
 
 
 def _with_heights(
@@ -196,16 +248,16 @@ def _offset_of_heights(rows: FileRows, length: float) -> float:
     a distance from the suspension: then their cord may have another length.
     """
     x, y, z = rows.positions.T
-    square = x * x + y * y
-    if (square >= length * length).any():
+    on_sphere = _on_sphere(rows.plane, length)
+    if on_sphere is None:
         return 0.0
-    above = z + np.sqrt(length * length - square)
-    offset = float(np.median(above))
     same = max(20 * rows.noise, _OFF * length)
-    cord = np.sqrt(square + z * z)
-    if np.ptp(above) > same or np.ptp(cord) <= same or abs(offset - length) <= same:
-        return 0.0
-    return offset
+    above = z - on_sphere
+    offset = float(np.median(above))
+    keeps_offset = np.ptp(above) <= same
+    keeps_cord = np.ptp(np.sqrt(x * x + y * y + z * z)) <= same
+    from_lowest = abs(offset - length) <= same
+    return offset if keeps_offset and not keeps_cord and not from_lowest else 0.0
 
 
 def _flat(rows: FileRows) -> FileRows:
@@ -213,7 +265,8 @@ def _flat(rows: FileRows) -> FileRows:
     plane = np.ascontiguousarray(rows.plane)
     noise = rows.noise
     if rows.relative:  # the smaller numbers of the plane are rounded by less
-        noise *= float(np.abs(plane).max() / np.abs(rows.positions).max())
+        share = np.abs(plane).max() / np.abs(rows.positions).max()
+        noise *= float(share)
     return replace(rows, positions=plane, noise=noise)
 
 
@@ -230,15 +283,14 @@ _METRES = _UnitOfLength(1.0, "")
 
 def _units_of_length(length: float) -> list[_UnitOfLength]:
     """Return the units in which a file may write lengths, metres first."""
-    return [
-        _METRES,
-        *(_UnitOfLength(1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()),
-        *(
-            _UnitOfLength(float(LENGTHS[unit]), f"counts metres as {LONG_NAMES[unit]}")
-            for unit in ("cm", "mm")
-        ),
-        _UnitOfLength(1 / length, "is in cord lengths (x/l)"),
-    ]
+    units = [_METRES]
+    for unit, text in LENGTHS_SAID.items():
+        units.append(_UnitOfLength(1 / float(LENGTHS[unit]), text))
+    for unit in ("cm", "mm"):
+        text = f"counts metres as {LONG_NAMES[unit]}"
+        units.append(_UnitOfLength(float(LENGTHS[unit]), text))
+    units.append(_UnitOfLength(1 / length, "is in cord lengths (x/l)"))
+    return units
 
 
 def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRows:
@@ -255,25 +307,47 @@ def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRow
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
 
-    units = _units_of_length(length)
-    named = [*AXES_SAID] if rename else [_AS_IN_SCENE]
-    for row, unit, (order, signs) in itertools.product((first, last), units, named):
-        placed = row[[*order]] / unit.per_metre * np.array(signs)
+    ways = [*AXES_SAID] if rename else [_AS_IN_SCENE]
+    for row, unit, way in itertools.product((first, last), _units_of_length(length), ways):
+        placed = _placed(row, unit, way)
         if _is_release(placed, release, rows.noise / unit.per_metre):
-            return _renamed(_in_metres(rows, unit, length), order, signs)
+            return _renamed(_in_metres(rows, unit, length), *way)
 
-    # another unit or other axes, and a release that is a little off
     distance = np.hypot(*release[:2])
-    # a unit of about a metre, such as a cord of a metre: the release alone may be off
-    near = [(unit, _AS_IN_SCENE) for unit in units if abs(unit.per_metre - 1) >= 3 * ROUGHLY]
-    # a release that is nearly right may have the right axes
-    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * distance:
-        near += [(_METRES, way) for way in named if way != _AS_IN_SCENE]
-    for unit, (order, signs) in near:
-        placed = first[[*order]] / unit.per_metre * np.array(signs)
+    for unit, way in _rough_ways(first, release, length, ways):
+        placed = _placed(first, unit, way)
         if np.abs(placed - release[:2]).max() < ROUGHLY * distance:
-            return _renamed(_in_metres(rows, unit, length), order, signs)
+            return _renamed(_in_metres(rows, unit, length), *way)
     return _from_angles(rows, release, length) or replace(rows, starts=False)
+
+
+def _placed(row: Array, unit: _UnitOfLength, way: _Axes) -> Array:
+    """Return x and y in m of a row in some unit and in some axes."""
+    order, signs = way
+    return np.asarray(row[[*order]] / unit.per_metre * np.array(signs))
+
+
+def _rough_ways(
+    first: Array, release: Array, length: float, ways: list[_Axes]
+) -> Iterator[tuple[_UnitOfLength, _Axes]]:
+    """Yield another unit, or other axes, that a file may have whose release is a little off.
+
+    Args:
+        first: its first row.
+        release: position and velocity of the scene.
+        length: of the cord in m.
+        ways: axes that it may have.
+    """
+    for unit in _units_of_length(length):
+        # in a unit of about a metre, such as a cord of a metre, the release alone may be off
+        if abs(unit.per_metre - 1) >= 3 * ROUGHLY:
+            yield unit, _AS_IN_SCENE
+    # a release that is nearly right may have the right axes
+    distance = np.hypot(*release[:2])
+    if np.abs(first[:2] - release[:2]).max() >= ROUGHLY * distance:
+        for way in ways:
+            if way != _AS_IN_SCENE:
+                yield _METRES, way
 
 
 def _from_angles(rows: FileRows, release: Array, length: float) -> FileRows | None:
@@ -282,16 +356,18 @@ def _from_angles(rows: FileRows, release: Array, length: float) -> FileRows | No
     distance = float(np.hypot(*release[:2]))
     # the angle of each coordinate by itself, or that of the cord along the direction of the bob
     separate = np.arcsin(np.clip(release[:2] / length, -1, 1))
-    polar = release[:2] / max(distance, 1e-300) * math.asin(min(1.0, distance / length))
+    direction = release[:2] / max(distance, 1e-300)
+    polar = direction * math.asin(min(1.0, distance / length))
     for unit, size in (("degrees", 180 / math.pi), ("radians", 1.0)):
         for expected in (separate, polar):
             near = _NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
             if not np.abs(first[:2] / size - expected).max() <= near:
                 continue
-            theta = rows.plane / size
-            plane = length * np.sin(theta)
+            angles = rows.plane / size
+            plane = length * np.sin(angles)
             if expected is polar:
-                plane = length * theta * sinc(np.hypot(theta[:, 0], theta[:, 1]))[:, None]
+                cord_angle = np.hypot(angles[:, 0], angles[:, 1])
+                plane = length * angles * sinc(cord_angle)[:, None]
             text = f"gives x and y as angles of the cord in {unit}"
             convention = Deviation("angles", text, float(np.abs(first).max()))
             return rows.changed(convention, positions=plane, noise=rows.noise / size * length)
@@ -307,8 +383,8 @@ def _in_metres(rows: FileRows, unit: _UnitOfLength, length: float) -> FileRows:
         return rows
     positions = rows.positions / unit.per_metre
     # whether it keeps the cord was judged in the wrong unit
-    kept = tuple(convention for convention in rows.conventions if convention.id != "off_the_sphere")
-    rows = replace(rows, conventions=kept)
+    conventions = tuple(part for part in rows.conventions if part.id != "off_the_sphere")
+    rows = replace(rows, conventions=conventions)
     convention = Deviation("unit_of_length", unit.text, largest(positions - rows.positions))
     noise = rows.noise / unit.per_metre
     in_metres = rows.changed(convention, positions=positions, noise=noise)
@@ -316,7 +392,8 @@ def _in_metres(rows: FileRows, unit: _UnitOfLength, length: float) -> FileRows:
         return in_metres
     x, y, z = positions.T
     on_sphere = -np.sqrt(np.maximum(length**2 - x**2 - y**2, 0))
-    return in_metres if np.abs(z - on_sphere).max() < 1e-3 * length else _flat(in_metres)
+    off = np.abs(z - on_sphere).max()
+    return in_metres if off < _NO_RISE * length else _flat(in_metres)
 
 
 def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> FileRows:
@@ -367,25 +444,10 @@ def _reversed(rows: FileRows) -> FileRows:
 
 def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
     """Find the unit of time by the frequency of the swing."""
-    if not frequency or len(rows.times) < 12:
+    if not frequency or len(rows.times) < _SHORTEST:
         return rows
-    plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
-    if np.abs(plane).max() < length:
-        plane = as_angles(plane, length)
-    size = float(np.abs(plane).max())
-    first_times = rows.times[:400]
-    first_plane = plane[:400]
-
-    def ratio(scale: float) -> float | None:
-        """Return the frequency of the rows over the scene's, their times multiplied by a scale."""
-        fit = fit_phasors(first_times * scale, first_plane, frequency)
-        if fit is None or fit.residual > 0.05 * size:
-            return None
-        rate = abs(fit.phasors.square) ** 0.5
-        # a part of a wide swing in another unit looks like one that decays, or grows, within it
-        return rate / frequency if abs(fit.phasors.drag) < _DECAYS * rate else None
-
-    as_printed = ratio(1.0)
+    swing = _FirstSwings.of(rows, frequency, length)
+    as_printed = swing.relative_frequency(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:
         return rows
     spacing = float(np.median(np.diff(rows.times)))
@@ -395,10 +457,49 @@ def unit_of_time(rows: FileRows, frequency: float, length: float) -> FileRows:
         if not spacing * scale * frequency < math.pi < span * scale * frequency:
             # rows farther apart fit several frequencies; over a shorter span they show none
             continue
-        scaled = ratio(scale)
-        if scaled is not None and abs(scaled - 1) < 0.1:
-            return rows.changed(Deviation("unit_of_time", text, size), times=rows.times * scale)
+        scaled = swing.relative_frequency(scale)
+        if scaled is not None and abs(scaled - 1) < _SAME_FREQUENCY:
+            convention = Deviation("unit_of_time", text, swing.size)
+            return rows.changed(convention, times=rows.times * scale)
     return rows
+
+
+@dataclass(frozen=True)
+class _FirstSwings:
+    """The first rows, by which the frequency of a swing is known.
+
+    Attributes:
+        times: in s.
+        plane: x + iy in m, or what small swings would have in their place.
+        size: the largest distance from the vertical in all rows, in m.
+        frequency: of the scene's swing in rad/s.
+    """
+
+    times: Array
+    plane: ComplexArray
+    size: float
+    frequency: float
+
+    @classmethod
+    def of(cls, rows: FileRows, frequency: float, length: float) -> _FirstSwings:
+        """Return those of some rows."""
+        plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
+        if np.abs(plane).max() < length:
+            plane = as_angles(plane, length)
+        size = float(np.abs(plane).max())
+        return cls(rows.times[:_FIRST], plane[:_FIRST], size, frequency)
+
+    def relative_frequency(self, scale: float) -> float | None:
+        """Return the frequency of the rows over the scene's, their times multiplied by a scale.
+
+        None if the rows show none.
+        """
+        fit = fit_phasors(self.times * scale, self.plane, self.frequency)
+        if fit is None or fit.residual > _UNFIT * self.size:
+            return None
+        rate = abs(fit.phasors.square) ** 0.5
+        # a part of a wide swing in another unit looks like one that decays, or grows, within it
+        return rate / self.frequency if abs(fit.phasors.drag) < _DECAYS * rate else None
 
 
 def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
@@ -406,15 +507,18 @@ def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
 
     If it cannot be undone, the distance that the bob moves meanwhile is added to the noise.
     """
-    even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
-    error_s = float(np.abs(rows.times - even).max())
+    times = rows.times
+    even = np.linspace(times[0], times[-1], len(times))
+    error_s = float(np.abs(times - even).max())
     single = any(convention.id == "single_precision" for convention in rows.conventions)
-    if not single or error_s > _SINGLE * rows.times[-1]:  # or they are not evenly spaced
+    if not single or error_s > _SINGLE * times[-1]:  # or they are not evenly spaced
         return rows
-    exact = float(f"{even[1] - even[0]:.6g}") * np.arange(len(even)) + even[0]
-    if (exact.astype(np.float32) == rows.times.astype(np.float32)).all():
+    spacing_s = float(f"{even[1] - even[0]:.6g}")
+    exact = spacing_s * np.arange(len(even)) + even[0]
+    if (exact.astype(np.float32) == times.astype(np.float32)).all():
         return replace(rows, times=exact)
-    return replace(rows, noise=rows.noise + error_s * frequency * float(np.abs(rows.plane).max()))
+    speed = frequency * float(np.abs(rows.plane).max())
+    return replace(rows, noise=rows.noise + error_s * speed)
 
 
 @dataclass(frozen=True)
@@ -439,27 +543,27 @@ def shifted(
 
     Unless they are known to be in order, the rows may be reversed.
     """
-    if not frequency or len(rows.times) < 12:
+    if not frequency or len(rows.times) < _SHORTEST:
         return rows
     start = as_angles(np.array([complex(release[0], release[1])]), length)[0]
     speed = complex(release[3], release[4])
     spacing_s = float(np.median(np.diff(rows.times)))
-    passages: list[_ReleasePassage] = []
     orders = [rows] if in_order else [rows, _reversed(rows)]
+    passages: list[_ReleasePassage] = []
     for ordered in orders:
         plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
         fit = fit_phasors(ordered.times, plane, frequency)
-        if fit is None or fit.residual > 1e-2 * abs(start):
+        if fit is None or fit.residual > _ROUGH_FIT * abs(start):
             continue
         for parts in range(-_SHIFTS * _PARTS, _SHIFTS * _PARTS + 1):
             motion = fit.phasors.later(parts * spacing_s / _PARTS)
-            distance = abs(motion.start - start) + abs(motion.speed - speed) / frequency
-            passages.append(_ReleasePassage(float(distance), parts, ordered))
+            distance_m = abs(motion.start - start) + abs(motion.speed - speed) / frequency
+            passages.append(_ReleasePassage(float(distance_m), parts, ordered))
     if not passages:
         return rows
     # of equal ones, the smallest shift
     best = min(passages, key=lambda p: p.distance_m + 1e-9 * abs(start) * abs(p.parts))
-    if best.distance_m > 2e-2 * abs(start):
+    if best.distance_m > 2 * _ROUGH_FIT * abs(start):
         return rows
 
     shift_s = best.parts * spacing_s / _PARTS
@@ -474,8 +578,8 @@ def _from_release(passage: _ReleasePassage, shift_s: float, size_m: float) -> Fi
     """
     rows = passage.rows
     if passage.parts:
-        count = abs(passage.parts)
-        distance = "one row" if count == _PARTS else f"{Fraction(count, _PARTS)} rows"
+        rows_late = Fraction(abs(passage.parts), _PARTS)
+        distance = "one row" if rows_late == 1 else f"{rows_late} rows"
         side = "ahead of" if passage.parts > 0 else "behind"
         text = f"has its clock {side} its rows by {distance} ({abs(shift_s):.6g} s)"
         word = "rows_late" if passage.parts < 0 else "rows_early"

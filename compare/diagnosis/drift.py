@@ -29,16 +29,21 @@ def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]
     typed = [_without_drift(reading) for reading in near]
     readers = {reading.reader.right.kind: reading.reader for reading in reversed(near)}
     for kind, reader in readers.items():
-        catalogue = [cause for cause in causes_of(case, kind) if not is_like_a_drift(cause.id)]
-        blind = replace(reader, fit=_blind(reader))
-        found = blind.readings(catalogue)[:TRIED]
-        typed += [replace(reading, reader=reader) for reading in found]
+        typed += _typed_beside_drift(case, kind, reader)
     different: dict[tuple[str, frozenset[str]], CauseReading] = {}
     for reading in typed:
         texts = frozenset(cause.text for cause in reading.causes)
         different.setdefault((reading.program.kind, texts), reading)
     beside = [_with_drift(reading) for reading in different.values()]
     return [polished(case, reading) for reading in beside if reading is not None]
+
+
+def _typed_beside_drift(case: FileCase, kind: str, reader: Reader) -> list[CauseReading]:
+    """Return the likeliest readings of a family, of causes that are not like a drift."""
+    catalogue = [cause for cause in causes_of(case, kind) if not is_like_a_drift(cause.id)]
+    blind = replace(reader, fit=_blind(reader))
+    likeliest = blind.readings(catalogue)[:TRIED]
+    return [replace(reading, reader=reader) for reading in likeliest]
 
 
 def instead_of_drift(case: FileCase, reading: CauseReading) -> Iterator[CauseReading]:
@@ -55,18 +60,17 @@ def instead_of_drift(case: FileCase, reading: CauseReading) -> Iterator[CauseRea
 
 def _with_drift(reading: CauseReading) -> CauseReading | None:
     """Return a reading beside a drift, fitted to what was fitted to the rows; None if it has too many numbers."""
-    found: CauseReading | None = reading
+    beside: CauseReading | None = reading
     for cause in DRIFT:
-        if found is not None:
-            found = found.reader.with_cause(found, cause)
-    return found
+        if beside is not None:
+            beside = beside.reader.with_cause(beside, cause)
+    return beside
 
 
 def _without_drift(reading: CauseReading) -> CauseReading:
     """Return a reading without the causes that are the same motion as a drift."""
-    return reading.reader.without(
-        reading, [cause for cause in reading.causes if is_like_a_drift(cause.id)]
-    )
+    drifting = [cause for cause in reading.causes if is_like_a_drift(cause.id)]
+    return reading.reader.without(reading, drifting)
 
 
 def _blind(reader: Reader) -> FamilyFit:
@@ -77,6 +81,8 @@ def _blind(reader: Reader) -> FamilyFit:
     for name in ("pull_x", "pull_y", "pull_z"):
         number = NAMES.index(name)
         pull[free.index(number)] = fit.theta[number]
-    drift = np.column_stack([fit.slopes @ pull, fit.slopes[:, free.index(NAMES.index("drag"))]])
-    along, _ = np.linalg.qr(drift)
-    return replace(fit, slopes=fit.slopes - along @ (along.T @ fit.slopes))
+    by_phase = fit.slopes @ pull
+    by_amplitude = fit.slopes[:, free.index(NAMES.index("drag"))]
+    along, _ = np.linalg.qr(np.column_stack([by_phase, by_amplitude]))
+    slopes = fit.slopes - along @ (along.T @ fit.slopes)
+    return replace(fit, slopes=slopes)
