@@ -36,9 +36,16 @@ ROUNDED_RATES = (
     7e-5,
 )
 UNITS = {
-    "g": " m/s²", "length": " m", "latitude": " degrees", "drag": " 1/s", "x": " m", "y": " m", "altitude": " m",
-    "vx": " m/s", "vy": " m/s",
-}  # fmt: skip
+    "g": " m/s²",
+    "length": " m",
+    "latitude": " degrees",
+    "drag": " 1/s",
+    "x": " m",
+    "y": " m",
+    "altitude": " m",
+    "vx": " m/s",
+    "vy": " m/s",
+}
 EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal force (--set site.gravity_is=effective)"
 NO_CHANGE = "leaves out the centrifugal force's change along the swing"
 CLOCK = "has a clock that runs {value} times as fast as its motion: divide its times by that"
@@ -59,29 +66,30 @@ FACTORS = (
 )
 
 
-# causes that are the same motion in principle, or nearly: where the first are read, the others are tried
+# causes that are the same motion in principle, or nearly
+_SAME_MOTION = (
+    # a clock that is slow by k: g smaller by k², the rotation by k
+    ("clock", "site.gravity"),
+    ("clock", "pendulum.length"),
+    ("clock", "site.gravity site.rotation_rate"),
+    ("clock", "pendulum.length site.rotation_rate"),
+    ("site.gravity", "pendulum.length"),
+    # the turn of the plane is Ω sin φ, whatever makes it
+    ("site.latitude", "site.rotation_rate"),
+    ("site.latitude", "solar_day"),
+    ("hemisphere", "coriolis_sign"),
+    ("hemisphere", "turned_plane_sign"),
+    ("coriolis_sign", "turned_plane_sign"),
+    ("hemisphere inertial_rest", "turned_plane_sign"),
+    ("coriolis_sign inertial_rest", "turned_plane_sign"),
+    ("coriolis_sign inertial_rest", "hemisphere inertial_rest"),
+    # rows that are late show a bob that moves already
+    ("late", "release.vx release.vy"),
+)
+_BOTH_WAYS = tuple(way for pair in _SAME_MOTION for way in (pair, pair[::-1]))
+# where the first are read, the others are tried
 SAME_MOTIONS: tuple[tuple[frozenset[str], frozenset[str]], ...] = tuple(
-    (frozenset(before.split()), frozenset(after.split()))
-    for one, other in (
-        # a clock that is slow by k: g smaller by k², the rotation by k
-        ("clock", "site.gravity"),
-        ("clock", "pendulum.length"),
-        ("clock", "site.gravity site.rotation_rate"),
-        ("clock", "pendulum.length site.rotation_rate"),
-        ("site.gravity", "pendulum.length"),
-        # the turn of the plane is Ω sin φ, whatever makes it
-        ("site.latitude", "site.rotation_rate"),
-        ("site.latitude", "solar_day"),
-        ("hemisphere", "coriolis_sign"),
-        ("hemisphere", "turned_plane_sign"),
-        ("coriolis_sign", "turned_plane_sign"),
-        ("hemisphere inertial_rest", "turned_plane_sign"),
-        ("coriolis_sign inertial_rest", "turned_plane_sign"),
-        ("coriolis_sign inertial_rest", "hemisphere inertial_rest"),
-        # rows that are late show a bob that moves already
-        ("late", "release.vx release.vy"),
-    )
-    for before, after in ((one, other), (other, one))
+    (frozenset(before.split()), frozenset(after.split())) for before, after in _BOTH_WAYS
 )
 
 # what a step error looks like: alone each may be its cause, and two at once are no other motion than a step error's
@@ -128,7 +136,8 @@ class Cause:
             number = f"{value:.3g} s"
         else:
             decimal, _ = shortest_decimal(value, uncertainty)
-            number = f"{decimal:.{PRINTED_DIGITS}g} and not {getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
+            scene = f"{getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
+            number = f"{decimal:.{PRINTED_DIGITS}g} and not {scene}"
         return self.text.format(value=number)
 
 
@@ -143,7 +152,9 @@ def shortest_decimal(value: float, doubt: float) -> tuple[float, int]:
 
 def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
     """Yield every cause that the program of a case may have as a member of a family: sphere, linear or angle."""
-    right, released, cord = case.right, case.released, case.rows.cord
+    right = case.right
+    released = case.released
+    cord = case.rows.cord
     yield from _gravity(right)
     if right.rate:
         yield from _rotation(right, kind)
@@ -153,12 +164,8 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
     if cord is not None:
         text = f"has a cord of {cord:.10g} m on average: a spring for a cord, or an integrator that leaves the sphere"
         yield Cause("stretched_cord", "pendulum.length", text, _set(length=cord), NAMED)
-    rows = case.intervals + 1
-    for pace, way in (
-        ((1 - 1 / rows, "slow"), (rows / case.intervals, "fast")) if case.intervals else ()
-    ):
-        text = f"has a clock too {way} by one part in its {rows} rows (a linspace that counts its ends)"
-        yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
+    if case.intervals:
+        yield from _linspace(case.intervals)
     yield fitted_number("clock", "clock", CLOCK, "pace", stage="clock")
     if not released:
         yield fitted_number("late", "clock", "writes its rows {value} late", "late", stage="clock")
@@ -166,8 +173,18 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
         if method.late and (kind == "sphere" or right.vx or right.vy):
             continue  # it is known from the first rows of a linear motion from rest
         text = f"integrates with {method.title} at a step of about {{value}}"
-        word, cost = f"integrator_{method.id}", FITTED + RARE * method.late
+        word = f"integrator_{method.id}"
+        cost = FITTED + RARE * method.late
         yield Cause(word, "integrator", text, _set(method=method), cost, "step", "integrator")
+
+
+def _linspace(intervals: int) -> Iterator[Cause]:
+    """Yield the clocks of a `linspace` that counts its ends."""
+    rows = intervals + 1
+    for pace, way in ((1 - 1 / rows, "slow"), (rows / intervals, "fast")):
+        clock = f"has a clock too {way} by one part in its {rows} rows"
+        text = f"{clock} (a linspace that counts its ends)"
+        yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
 
 
 def _set(**fields: object) -> Callable[[Program], Program]:

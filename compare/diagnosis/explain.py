@@ -155,20 +155,17 @@ class KnownScene:
         count = len(rows.times)
         chosen = np.arange(count) if count <= most else _sample(count)
         rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
-        since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
-        truth = self.model.states(self.scene.exact, since_release)[
-            -len(rows.times) :, : rows.positions.shape[1]
-        ]
-        right, frequency = self.right, self.frequency
-        pendulum = SphericalPendulum(
-            self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate))
-        )
-        intervals = (
-            round(float(rows.times[-1] / rows.times[1]))
-            if rows.times[0] == 0 < rows.times[-1]
-            else 0
-        )
-        return FileCase(rows, truth, right, pendulum, frequency, allowed_m, intervals)
+        times = rows.times
+        since_release = times if times[0] == 0 else np.concatenate([[0.0], times])
+        states = self.model.states(self.scene.exact, since_release)
+        truth = states[-len(times) :, : rows.positions.shape[1]]
+        right = self.right
+        fastest = FAST * (self.frequency + abs(right.rate))
+        pendulum = SphericalPendulum(self.model, right.radius, right.gradient_square, fastest)
+        intervals = 0
+        if times[0] == 0 < times[-1]:
+            intervals = round(float(times[-1] / times[1]))
+        return FileCase(rows, truth, right, pendulum, self.frequency, allowed_m, intervals)
 
 
 @dataclass(frozen=True)
@@ -315,19 +312,18 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
 
 def _is_mirrored(cause: Deviation) -> bool:
     """Return whether a release is the scene's but for its sign, which is an axis that points the other way."""
-    if (
-        not cause.id.endswith(("release.x", "release.y"))
-        or cause.value is None
-        or cause.shift is None
-    ):
+    if not cause.id.endswith(("release.x", "release.y")):
+        return False
+    if cause.value is None or cause.shift is None:
         return False
     scene = cause.value - cause.shift
     return abs(cause.value + scene) < ROUGHLY * abs(scene)
 
 
 def _sample(count: int) -> Array:
-    even = np.linspace(0, count - 1, min(ROWS // 2, count))
-    crowded = np.geomspace(1, count, min(ROWS // 2, count)) - 1
-    return np.unique(
-        np.concatenate([even, crowded, np.arange(min(count, ROWS // 4))]).astype(np.int64)
-    )
+    """Return the indices of some rows: half of them evenly spaced, half at the beginning."""
+    half = min(ROWS // 2, count)
+    even = np.linspace(0, count - 1, half)
+    crowded = np.geomspace(1, count, half) - 1
+    first = np.arange(min(count, ROWS // 4))
+    return np.unique(np.concatenate([even, crowded, first]).astype(np.int64))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -43,6 +43,17 @@ NAMES = (
 # indices of the numbers with such a unit
 _PER_SECOND = [0, 1, 2, 6, 9, 10]
 _PER_SECOND_SQUARED = [3, 4, 5]
+# numbers of a program, and the inputs of a scene that they are
+_GIVEN = {
+    "g": "gravity",
+    "length": "length",
+    "latitude": "latitude",
+    "rate": "rotation_rate",
+    "radius": "equatorial_radius",
+    "flattening": "flattening",
+    "altitude": "altitude",
+    "drag": "drag",
+}
 _HIGHEST = 12000.0  # m above or below the ellipsoid: no pendulum hangs farther away
 
 
@@ -107,22 +118,17 @@ class Program:
         `start` is x, y, z, vx, vy, vz at the release in m and m/s.
         """
         x, y, _, vx, vy, _ = start.tolist()
-        rate = float(inputs.rotation_rate)
+        numbers: dict[str, Any] = {
+            name: float(getattr(inputs, given)) for name, given in _GIVEN.items()
+        }
         return cls(
-            g=float(inputs.gravity),
-            length=float(inputs.length),
-            latitude=float(inputs.latitude),
-            rate=rate,
-            radius=float(inputs.equatorial_radius),
-            flattening=float(inputs.flattening),
-            altitude=float(inputs.altitude),
-            drag=float(inputs.drag),
+            **numbers,
             x=x,
             y=y,
             vx=vx,
             vy=vy,
             gravity_reading=inputs.gravity_is,
-            nominal_rate=rate,
+            nominal_rate=numbers["rate"],
         )
 
     @property

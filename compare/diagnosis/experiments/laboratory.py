@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -48,12 +49,10 @@ class Laboratory:
             explanation: of its one file.
             run: runs it for an experiment in a scene; raises a FoucaultError.
         """
-        self._problem, self._allowed_m, self._run, self._explanation = (
-            KnownScene.of(scene),
-            allowed_m,
-            run,
-            explanation,
-        )
+        self._problem = KnownScene.of(scene)
+        self._allowed_m = allowed_m
+        self._run = run
+        self._explanation = explanation
         # axes as they were read
         renamed = any(convention.id in RENAMED for convention in explanation.conventions)
         self._without = frozenset() if renamed else RENAMED
@@ -76,29 +75,43 @@ class Laboratory:
                 explanations = self._explanations()
             known = bool(explanations)
             explanations = explanations or self._of_integrator()
-        texts = [
-            "; it ".join(cause.text for cause in explanation.causes) for explanation in explanations
-        ]
+        ids = tuple(tuple(cause.id for cause in each.causes) for each in explanations)
+        found = Experiments(tuple(self._findings), ids, self._conclusion(explanations, known))
+        if len(self._runs) == 1:
+            return found, self._explanation
+        return found, self._measured_explanation(explanations)
+
+    def _conclusion(self, explanations: Sequence[Explanation], known: bool) -> str:
+        """Return what follows from all runs.
+
+        Args:
+            explanations: that make all files.
+            known: whether they do, and not an integrator whose error is not known.
+        """
         files = f"the {len(self._runs)} files"
-        text = f"Measured: {'one explanation makes' if known else 'an integrator is at fault, say'} {files}."
-        if len(explanations) > 1:
-            text = f"Cannot be told apart by these experiments: your program {', or '.join(texts)}."
-        elif not explanations:
-            text = f"No known mistake makes {files}: nothing is named."
-        ids = tuple(tuple(cause.id for cause in explanation.causes) for explanation in explanations)
-        unknown = replace(
-            self._explanation, causes=(), slip="", corrected_m=_error_m(self._runs[0])
-        )
-        best = explanations[0] if len(explanations) == 1 else unknown
-        same = _ids(self._explanation) == set().union(*ids)
-        best = replace(
-            best,
-            conventions=self._explanation.conventions,
-            model=self._explanation.model if same else None,
-        )
-        return Experiments(tuple(self._findings), ids, text), self._explanation if len(
-            self._runs
-        ) == 1 else best
+        if not explanations:
+            return f"No known mistake makes {files}: nothing is named."
+        if len(explanations) == 1:
+            cause = "one explanation makes" if known else "an integrator is at fault, say"
+            return f"Measured: {cause} {files}."
+        texts = []
+        for explanation in explanations:
+            texts.append("; it ".join(cause.text for cause in explanation.causes))
+        return f"Cannot be told apart by these experiments: your program {', or '.join(texts)}."
+
+    def _measured_explanation(self, explanations: Sequence[Explanation]) -> Explanation:
+        """Return the explanation that is left, in the conventions of the first file.
+
+        It has no causes if several are left.
+        """
+        first = self._explanation
+        ids: set[str] = set().union(*map(_ids, explanations))
+        model = first.model if _ids(first) == ids else None
+        if len(explanations) == 1:
+            (best,) = explanations
+        else:
+            best = replace(first, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
+        return replace(best, conventions=first.conventions, model=model)
 
     def _explanations(self) -> list[Explanation]:
         """Return what makes the files of all runs; where nothing does, with the steps of a method on the sphere."""
@@ -106,16 +119,15 @@ class Laboratory:
             case = JointCase.of(self._runs)
             explanations = _explanations_of(case)
             if self._likely is None and not explanations:
-                self._likely = [
-                    (steps, way) for steps in likely_steps(self._runs[0].case, None) for way in WAYS
-                ]
+                likely = likely_steps(self._runs[0].case, None)
+                self._likely = list(itertools.product(likely, WAYS))
             # what does not make these files makes no more of them
             while not explanations and self._likely:
                 steps, way = self._likely[0]
-                near = case.without_steps(steps, way)[0].readings(math.inf)
-                explanations = (
-                    _explanations_of(*case.without_steps(steps, way, near[0])) if near else []
-                )
+                without_steps, _ = case.without_steps(steps, way)
+                near = without_steps.readings(math.inf)
+                if near:
+                    explanations = _explanations_of(*case.without_steps(steps, way, near[0]))
                 self._likely = self._likely[not explanations :]
             return explanations
         except UNSOLVED:
@@ -130,53 +142,35 @@ class Laboratory:
                 if changed > first.case.enough:
                     return [_of_loose_integrator(first, changed)]
         try:
-            read = [(run.case, readers_of(run.case, list(run.fits.values()))) for run in self._runs]
+            drift = [_drifts(run) for run in self._runs]
         except UNSOLVED:
             return []
-        spheres = [
-            (case, reader)
-            for case, readers in read
-            for reader in readers
-            if reader.right.kind == "sphere"
-        ]
-        drifting = {id(case) for case, reader in spheres if reader.drifts(case, reader.right)}
-        if not len(drifting) == len(self._runs) > LEAST_RUNS:
+        if not all(drift) or len(drift) <= LEAST_RUNS:
             return []
         return [_of_loose_integrator(first, _error_m(first))]
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""
         scene = self._problem.scene
-        problem, changes = KnownScene.of(experiment.changed(scene)), experiment.values(scene)
+        problem = KnownScene.of(experiment.changed(scene))
+        changes = experiment.values(scene)
         if experiment.finer > 1:
             changes[SETTING] = f"1/{experiment.finer} of the first"
-        trial, conclusion = (
-            None,
-            "its file is read in another way than the first; nothing follows from it",
-        )
+        trial: Trial | None = None
+        conclusion = "its file is read in another way than the first; nothing follows from it"
         try:
             candidate = self._run(experiment, problem.scene)
-            trial = (
-                self._trial(problem, candidate, 1 / experiment.finer)
-                if candidate.positions
-                else None
-            )
+            if candidate.positions:
+                trial = self._trial(problem, candidate, 1 / experiment.finer)
         except UNSOLVED as error:
             conclusion = f"{str(error).rstrip('.')}; nothing follows from it"
         error_m = None
         if trial is not None and _conventions(trial) == _conventions(self._runs[0]):
             self._runs.append(trial)
             error_m = _error_m(trial)
-            gone = error_m <= trial.case.enough
-            conclusion = (
-                f"what is wrong is {experiment.where}"
-                if gone
-                else f"it is not {experiment.where} alone"
-            )
-            conclusion = conclusion if experiment.where else ""
-        self._findings.append(
-            Finding(experiment.id, experiment.title, changes, error_m, conclusion)
-        )
+            conclusion = _conclusion_of(experiment, error_m <= trial.case.enough)
+        finding = Finding(experiment.id, experiment.title, changes, error_m, conclusion)
+        self._findings.append(finding)
         return error_m is not None
 
     def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
@@ -186,9 +180,8 @@ class Laboratory:
         case = problem.case(rows, self._allowed_m)
         reach = largest(case.truth)
         self._reach = self._reach or reach
-        return Trial(
-            problem, replace(case, allowed_m=self._allowed_m * reach / self._reach), setting
-        )
+        allowed_m = self._allowed_m * reach / self._reach
+        return Trial(problem, replace(case, allowed_m=allowed_m), setting)
 
 
 def _explanations_of(case: JointCase, *step: Deviation) -> list[Explanation]:
@@ -199,19 +192,40 @@ def _explanations_of(case: JointCase, *step: Deviation) -> list[Explanation]:
         explanation = case.explanation_of(reading, *step)
         groups = {SAME_MOTION.get(cause.group, cause.group) for cause in reading.causes}
         ids = _ids(explanation)
-        same = groups in explained or any(_ids(likelier) <= ids for likelier in explanations)
+        contains_another = any(_ids(likelier) <= ids for likelier in explanations)
+        same = groups in explained or contains_another
         least = explanations[0].score if explanations else explanation.score
         if ids and not same and explanation.score <= least + EQUAL:
             explanations.append(explanation)
             explained.append(groups)
-    sets = [_ids(explanation) for explanation in explanations]
-    return [explanations[i] for i, ids in enumerate(sets) if not any(fewer < ids for fewer in sets)]
+    return [each for each in explanations if not _has_fewer(explanations, each)]
+
+
+def _has_fewer(explanations: Sequence[Explanation], explanation: Explanation) -> bool:
+    """Return whether one of some explanations has a part of the causes of another, and no other causes."""
+    ids = _ids(explanation)
+    return any(_ids(fewer) < ids for fewer in explanations)
 
 
 def _of_loose_integrator(trial: Trial, size_m: float) -> Explanation:
     """Return the explanation that an integrator's error moves the bob by a size in m: nothing of it is put right."""
     case = trial.case
     return case.explanation((loose(size_m),), case.rows.positions - case.truth, 0)
+
+
+def _drifts(trial: Trial) -> bool:
+    """Return whether phase and amplitude drift in a run, beside a right program on the sphere."""
+    case = trial.case
+    readers = readers_of(case, list(trial.fits.values()))
+    spheres = [reader for reader in readers if reader.right.kind == "sphere"]
+    return any(reader.drifts(case, reader.right) for reader in spheres)
+
+
+def _conclusion_of(experiment: Experiment, gone: bool) -> str:
+    """Return what follows from an experiment by itself, with which the error is gone or not."""
+    if not experiment.where:
+        return ""
+    return f"what is wrong is {experiment.where}" if gone else f"it is not {experiment.where} alone"
 
 
 def _ids(explanation: Explanation) -> set[str]:
@@ -223,8 +237,5 @@ def _error_m(trial: Trial) -> float:
 
 
 def _conventions(trial: Trial) -> list[str]:
-    return [
-        convention.id
-        for convention in trial.case.rows.conventions
-        if convention.id not in UNCORRECTED
-    ]
+    ids = [convention.id for convention in trial.case.rows.conventions]
+    return [word for word in ids if word not in UNCORRECTED]
