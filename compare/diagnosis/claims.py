@@ -267,8 +267,8 @@ class _AmongRivals:
     @cached_property
     def _may_be_a_step(self) -> bool:
         """Whether a step of no name does what the numbers do that nobody typed."""
-        untyped = self._untyped.union(*({one.id for one in rival.untyped} for rival in self.rivals))
-        if not untyped & {*_ONE_DRIFT}:
+        untyped = [cause for one in self._words for cause in one.untyped]
+        if not any(cause.id in _ONE_DRIFT for cause in untyped):
             return False
         different = self._words[self.best] - self._shared | self._untyped
         return all(map(is_like_a_drift, different))
@@ -309,11 +309,11 @@ def _without_name(alternative: Alternative) -> Alternative:
 def _different(alternatives: Sequence[Alternative]) -> list[Alternative]:
     """Return alternatives without those that say another one, and more: what both say is enough."""
     by_text = {alternative.text: alternative for alternative in alternatives if alternative.text}
-    return [
-        alternative
-        for text, alternative in by_text.items()
-        if not any(text.startswith(other) and text != other for other in by_text)
-    ]
+
+    def says_another(text: str) -> bool:
+        return any(text.startswith(other) and text != other for other in by_text)
+
+    return [alternative for text, alternative in by_text.items() if not says_another(text)]
 
 
 def _either(

@@ -33,7 +33,8 @@ from .formulas import of_formula
 from .hypotheses import Claim
 from .observed import of_observation
 from .programs import Program, SphericalPendulum
-from .slips import falls, growth, of_slip
+from .runaways import falls, growth
+from .slips import of_slip
 from .stepped import of_loops, of_steps
 
 RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))

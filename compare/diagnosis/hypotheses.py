@@ -186,15 +186,19 @@ class Hypothesis(Claim):
     @property
     def price(self) -> int:
         """One for each change, named model, or number of few digits; two for any other number, and for a factor."""
-        model = self.reading.program.kind != "sphere"
-        inputs = [cause for cause in self.numbers if cause.stage != "integrator"]
-        dear = sum(self._is_dear(cause) for cause in self.numbers)
-        # another sign is a change of its own
-        dear += sum(
-            self.reading.value(cause) * float(getattr(self.case.right, cause.free)) < 0
-            for cause in inputs
-        )
-        return len(self.reading.causes) + dear + model
+        has_model = self.reading.program.kind != "sphere"
+        price = len(self.reading.causes) + has_model
+        for cause in self.numbers:
+            # another sign is a change of its own
+            price += self._is_dear(cause) + self._has_other_sign(cause)
+        return price
+
+    def _has_other_sign(self, cause: Cause) -> bool:
+        """Return whether the number of an input has another sign than the scene's."""
+        if cause.stage == "integrator":
+            return False
+        scene = float(getattr(self.case.right, cause.free))
+        return self.reading.value(cause) * scene < 0
 
     def _is_dear(self, cause: Cause) -> bool:
         """Return whether a number costs one more than a change; a step does not on the sphere, where it is rough."""
@@ -236,9 +240,9 @@ class Hypothesis(Claim):
         if not step > 0:
             return False
         count = float(np.ptp(self.case.rows.times[:2])) / step
-        return round(count) > 0 and abs(count - round(count)) <= max(
-            RIVAL * doubt * count / step, CHANCE
-        )
+        doubt_of_count = doubt * count / step
+        off = abs(count - round(count))
+        return round(count) > 0 and off <= max(RIVAL * doubt_of_count, CHANCE)
 
     def refitted(self, reading: CauseReading) -> Hypothesis:
         """Return the hypothesis of another reading, its numbers fitted to the same rows."""
@@ -355,18 +359,27 @@ def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypoth
 
     Beside numbers that nobody typed it is enough that one without any explains the rows.
     """
-    found: dict[frozenset[str], Hypothesis] = {}
+    rivals: dict[frozenset[str], Hypothesis] = {}
     for hypothesis in hypotheses:
-        typed = best.untyped_inputs and not hypothesis.untyped and hypothesis.explains
-        near = typed or hypothesis.rest <= RIVAL * best.rest
-        other = not hypothesis.words >= best.words and not hypothesis.words < best.words
-        same = any(best.has_number(hypothesis, cause) for cause in hypothesis.numbers)
-        near = near and not best.takes_from(hypothesis)
-        # what is the same motion as a step error is a rival of it at any price
-        alike = all(map(is_like_a_drift, hypothesis.words ^ best.words))
-        if near and other and not same and (alike or hypothesis.price <= best.price):
-            found.setdefault(hypothesis.words, hypothesis)
+        if _is_rival(best, hypothesis):
+            rivals.setdefault(hypothesis.words, hypothesis)
     # few digits beat many
-    if any(rival.untyped for rival in found.values()) and best.is_no_accident():
-        return [rival for rival in found.values() if not rival.untyped]
-    return list(found.values())
+    if any(rival.untyped for rival in rivals.values()) and best.is_no_accident():
+        return [rival for rival in rivals.values() if not rival.untyped]
+    return list(rivals.values())
+
+
+def _is_rival(best: Hypothesis, other: Hypothesis) -> bool:
+    """Return whether another hypothesis costs no more than the best one, and does about as well by other causes."""
+    if other.words >= best.words or other.words < best.words:
+        return False
+    without_untyped = best.untyped_inputs and not other.untyped and other.explains
+    if not without_untyped and other.rest > RIVAL * best.rest:
+        return False
+    if best.takes_from(other):
+        return False
+    if any(best.has_number(other, cause) for cause in other.numbers):
+        return False
+    # what is the same motion as a step error is a rival of it at any price
+    is_same_motion = all(map(is_like_a_drift, other.words ^ best.words))
+    return is_same_motion or other.price <= best.price
