@@ -38,11 +38,11 @@ from .slips import of_slip
 from .stepped import of_loops, of_steps
 
 RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))
-# conventions that are no facts of the printed numbers: what is left without them decides
+# Conventions that are no facts of the printed numbers: what is left without them decides. A unit of time is not among
+# them: without it the swing would be 24 times as fast as the scene's, or more.
 QUESTIONED = RENAMED | {
     "unit_of_length",
     "angles",
-    "unit_of_time",
     "clock_offset",
     "rows_reversed",
     "rows_late",
@@ -67,8 +67,9 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         allowed_m: distance in m that counts as agreement.
     """
     if len(times) > MOST_ROWS:
-        first = np.arange(MOST_ROWS // 2)
-        even = np.linspace(MOST_ROWS // 2, len(times) - 1, MOST_ROWS // 2).astype(np.int64)
+        half = MOST_ROWS // 2
+        first = np.arange(half)
+        even = np.linspace(half, len(times) - 1, half).astype(np.int64)
         chosen = np.concatenate([first, even])
         times = times[chosen]
         columns = {name: column[chosen] for name, column in columns.items()}
@@ -78,11 +79,8 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
             found = _explained(_File(times, columns, problem, allowed_m))
             next_step = _next_step(times, problem.frequency)
             return replace(found, reading=None, next_step=next_step)
-    except (
-        FoucaultError,
-        ArithmeticError,
-        np.linalg.LinAlgError,
-    ):  # no program solves such a scene, or fits it
+    except (FoucaultError, ArithmeticError, np.linalg.LinAlgError):
+        # no program solves such a scene, or fits it
         return Explanation()
 
 
@@ -197,9 +195,9 @@ class _File:
         """Return the first good explanation of rows."""
         return first_good_explanation(self.case(rows), self.problem.scene)
 
-    def need_of(self, convention: Deviation, explanation: Explanation) -> float:
-        """Return how many times as much an explanation leaves without a convention, its numbers fitted again."""
-        case = self.case(self.rows({convention.id}))
+    def need_of(self, rows: FileRows, explanation: Explanation) -> float:
+        """Return how many times as much an explanation leaves of other rows, its numbers fitted again."""
+        case = self.case(rows)
         left = case.rows.positions - case.truth
         if explanation.reading is not None:
             left = case.left(polished(case, explanation.reading).program)
@@ -219,7 +217,8 @@ def _explained(file: _File, without: frozenset[str] = frozenset()) -> Explanatio
     for convention in best.conventions:
         said: Deviation | None = convention
         if convention.id in QUESTIONED:
-            said = by_need(convention, file.need_of(convention, best))
+            rows_without = file.rows(without | {convention.id})
+            said = by_need(convention, file.need_of(rows_without, best))
         if said is None and convention.id not in without:
             return _explained(file, without | {convention.id})
         if said is convention:
