@@ -39,7 +39,7 @@ from .stepped import of_loops, of_steps
 
 RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))
 # Conventions that are no facts of the printed numbers: what is left without them decides. A unit of time is not among
-# them: without it the swing would be 24 times as fast as the scene's, or more.
+# them: without it the swing would be 60 times as fast as the scene's, or as slow.
 QUESTIONED = RENAMED | {
     "unit_of_length",
     "angles",

@@ -23,10 +23,8 @@ def falls(rows: FileRows, right: Program) -> str:
         free = ((pulls > 1 / RIVAL) & (pulls < RIVAL)).all()
         if free and distance > RIVAL * right.length:
             fell = f"Its {name} falls by {distance:.3g} m in {time[-1]:.3g} s"
-            return (
-                f"{fell}, as a body does that no cord holds: "
-                f"{name} is its vertical, and its cord pulls too little."
-            )
+            guess = f"perhaps {name} is its vertical, and its cord pulls too little"
+            return f"{fell}, as a body does that no cord holds: {guess}."
     return ""
 
 
@@ -41,4 +39,4 @@ def growth(rows: FileRows) -> str:
     between = float(rows.times[parts[-1]].mean() - rows.times[parts[0]].mean())
     fold = between / math.log(reach[-1] / reach[0])
     grows = f"Its motion grows by a factor of e in {fold:.2g} s"
-    return f"{grows}: a force does work, or the cord does not hold."
+    return f"{grows}: a force does work, the cord does not hold, or the steps are too long."
