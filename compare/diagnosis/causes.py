@@ -288,100 +288,107 @@ def _gravity(right: Program) -> Iterator[Cause]:
 
 
 def _rotation(right: Program, kind: str) -> Iterator[Cause]:
+    yield from _rates(right)
+    yield from _coriolis_forces(kind)
+    yield from _turned_planes()
+    if kind == "sphere":
+        yield from _frames()
+
+
+def _rate(word: str, text: str, value: float, cost: float = NAMED) -> Cause:
+    """Return the cause that a rotation rate is another one."""
+    return Cause(word, "rate", text, _set(rate=value), cost)
+
+
+def _rates(right: Program) -> Iterator[Cause]:
+    """Yield other rotation rates."""
     sign = math.copysign(1.0, right.rate)
     size = abs(right.rate)
-
-    def rate(word: str, text: str, value: float, cost: float = NAMED) -> Cause:
-        return Cause(word, "rate", text, _set(rate=value), cost)
-
-    natural = abs(size / 7.292115e-5 - 1) < 0.01
+    is_earth = abs(size / 7.292115e-5 - 1) < 0.01
     solar = 2 * math.pi / SOLAR_DAY
-    if natural and abs(size / solar - 1) > 1e-7:
-        text = "turns the Earth once in a solar day (86400 s) instead of a sidereal day (86164.1 s)"
-        yield rate("solar_day", text, sign * solar)
-    if natural:
-        for value in ROUNDED_RATES:
-            if abs(value / size - 1) > 1e-9:
-                yield rate(
-                    "rounded_rate",
-                    f"rounds the rotation rate to {value:g} rad/s",
-                    sign * value,
-                    0.4,
-                )
-        for day in SIDEREAL_DAYS:
-            if abs(2 * math.pi / day / size - 1) > 1e-9:
-                text = f"turns the Earth once in {day:.10g} s"
-                yield rate("sidereal_day", text, sign * 2 * math.pi / day, 0.4)
-        for hours in (24.0, 23.9345, 23.93447):
-            text = f"takes 2π/{hours:g}, which is the rotation rate in radians per hour, as radians per second"
-            yield rate("rate_per_hour", f"{text} (divide by 3600)", sign * 2 * math.pi / hours)
-        text = "takes the rotation rate in degrees per hour as radians per second"
-        yield rate("rate_in_degrees_per_hour", text, math.degrees(right.rate) * 3600)
-        yield rate(
-            "rate_in_degrees",
-            "takes the rotation rate in degrees as radians",
-            math.degrees(right.rate),
-        )
+    if is_earth:
+        yield from _rates_of_earth(right)
     for factor in FACTORS:
         text = f"turns the Earth {factor:g} times too fast"
-        yield rate("rate_factor", text, factor * right.rate, NAMED if factor > 2 else 0.45)
-        if natural and factor > 2:
-            yield rate("rate_factor", f"{text}, in a solar day", sign * factor * solar, 0.4)
-    yield rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.45)
+        cost = NAMED if factor > 2 else 0.45
+        yield _rate("rate_factor", text, factor * right.rate, cost)
+        if is_earth and factor > 2:
+            yield _rate("rate_factor", f"{text}, in a solar day", sign * factor * solar, 0.4)
+    yield _rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.45)
     text = "turns {value} times as fast as the scene's Earth"
     yield fitted_number("site.rotation_rate", "rate", text, "rate")
-    factors = [
-        (
-            "coriolis_sign",
-            "gives the Coriolis force the wrong sign: its plane turns the wrong way",
-            -1.0,
-        ),
+
+
+def _rates_of_earth(right: Program) -> Iterator[Cause]:
+    """Yield other rates that a program of the Earth may have."""
+    sign = math.copysign(1.0, right.rate)
+    size = abs(right.rate)
+    solar = 2 * math.pi / SOLAR_DAY
+    if abs(size / solar - 1) > 1e-7:
+        text = "turns the Earth once in a solar day (86400 s) instead of a sidereal day (86164.1 s)"
+        yield _rate("solar_day", text, sign * solar)
+    for value in ROUNDED_RATES:
+        if abs(value / size - 1) > 1e-9:
+            text = f"rounds the rotation rate to {value:g} rad/s"
+            yield _rate("rounded_rate", text, sign * value, 0.4)
+    for day in SIDEREAL_DAYS:
+        if abs(2 * math.pi / day / size - 1) > 1e-9:
+            text = f"turns the Earth once in {day:.10g} s"
+            yield _rate("sidereal_day", text, sign * 2 * math.pi / day, 0.4)
+    for hours in (24.0, 23.9345, 23.93447):
+        rate = f"2π/{hours:g}, which is the rotation rate in radians per hour"
+        text = f"takes {rate}, as radians per second (divide by 3600)"
+        yield _rate("rate_per_hour", text, sign * 2 * math.pi / hours)
+    degrees = math.degrees(right.rate)
+    text = "takes the rotation rate in degrees per hour as radians per second"
+    yield _rate("rate_in_degrees_per_hour", text, degrees * 3600)
+    text = "takes the rotation rate in degrees as radians"
+    yield _rate("rate_in_degrees", text, degrees)
+
+
+def _coriolis_forces(kind: str) -> Iterator[Cause]:
+    """Yield other Coriolis forces."""
+    wrong_sign = "gives the Coriolis force the wrong sign"
+    factors = (
+        ("coriolis_sign", f"{wrong_sign}: its plane turns the wrong way", -1.0),
         ("coriolis_half", "omits the factor 2 in the Coriolis force", 0.5),
         ("coriolis_double", "doubles the Coriolis force", 2.0),
         ("no_coriolis", "leaves out the Coriolis force", 0.0),
-    ]
+    )
     for word, text, factor in factors:
         yield Cause(word, "coriolis", text, _coriolis(both=factor))
-    parts = [
-        (
-            "vertical_only",
-            "uses only the vertical part of Ω in the Coriolis force",
-            _coriolis(north=0.0),
-            NAMED,
-        ),
-        (
-            "horizontal_sign",
-            "gives the horizontal part of Ω the wrong sign",
-            _coriolis(north=-1.0),
-            RARE,
-        ),
-        ("vertical_sign", "gives the vertical part of Ω the wrong sign", _coriolis(up=-1.0), RARE),
-    ]
-    for word, text, change, cost in parts if kind == "sphere" else ():
-        yield Cause(word, "turn", text, change, cost)
+    if kind != "sphere":
+        return
+    text = "uses only the vertical part of Ω in the Coriolis force"
+    yield Cause("vertical_only", "turn", text, _coriolis(north=0.0))
+    text = "gives the horizontal part of Ω the wrong sign"
+    yield Cause("horizontal_sign", "turn", text, _coriolis(north=-1.0), RARE)
+    text = "gives the vertical part of Ω the wrong sign"
+    yield Cause("vertical_sign", "turn", text, _coriolis(up=-1.0), RARE)
+
+
+def _turned_planes() -> Iterator[Cause]:
+    """Yield planes that are turned by hand."""
     text = "is a pendulum that feels no rotation, whose plane is turned by hand"
-    yield Cause("turned_plane", "coriolis", text, _set(turned_plane=True), RARE, stage="model")
+    by_hand = _set(turned_plane=True)
+    yield Cause("turned_plane", "coriolis", text, by_hand, RARE, stage="model")
     backwards = _set(turned_plane=True, coriolis=(1.0, 1.0, -1.0))
-    yield Cause(
-        "turned_plane_sign",
-        "coriolis",
-        f"{text} the wrong way round",
-        backwards,
-        RARE,
-        stage="model",
+    text = f"{text} the wrong way round"
+    yield Cause("turned_plane_sign", "coriolis", text, backwards, RARE, stage="model")
+
+
+def _frames() -> Iterator[Cause]:
+    """Yield other horizontal axes."""
+    frames = (
+        ("frame_x_south", "x points south and y east", (0.0, -1.0, 1.0, 0.0)),
+        ("frame_x_north", "x points north and y west", (0.0, 1.0, -1.0, 0.0)),
+        ("frame_x_west", "x points west and y south", (-1.0, 0.0, 0.0, -1.0)),
+        ("frame_x_north_y_east", "x points north and y east", (0.0, 1.0, 1.0, 0.0)),
     )
-    if kind == "sphere":
-        frames = (
-            ("frame_x_south", "x points south and y east", (0.0, -1.0, 1.0, 0.0)),
-            ("frame_x_north", "x points north and y west", (0.0, 1.0, -1.0, 0.0)),
-            ("frame_x_west", "x points west and y south", (-1.0, 0.0, 0.0, -1.0)),
-            ("frame_x_north_y_east", "x points north and y east", (0.0, 1.0, 1.0, 0.0)),
-        )
-        for word, text, matrix in frames:
-            sentence = (
-                f"uses axes of its own, in which {text}, and takes the release's x and y in them"
-            )
-            yield Cause(word, "frame", sentence, _set(frame=matrix), 0.4, stage="frame")
+    for word, axes, matrix in frames:
+        own = f"uses axes of its own, in which {axes}"
+        text = f"{own}, and takes the release's x and y in them"
+        yield Cause(word, "frame", text, _set(frame=matrix), 0.4, stage="frame")
 
 
 def _latitude(right: Program) -> Iterator[Cause]:

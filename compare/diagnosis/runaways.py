@@ -20,8 +20,8 @@ def falls(rows: FileRows, right: Program) -> str:
     for name, displacement in zip("xy", displacements.T, strict=True):
         pulls = np.abs(2 * displacement / time**2) / right.g
         distance = float(abs(displacement[-1:]).sum())
-        free = ((pulls > 1 / RIVAL) & (pulls < RIVAL)).all()
-        if free and distance > RIVAL * right.length:
+        falls_freely = ((pulls > 1 / RIVAL) & (pulls < RIVAL)).all()
+        if falls_freely and distance > RIVAL * right.length:
             fell = f"Its {name} falls by {distance:.3g} m in {time[-1]:.3g} s"
             guess = f"perhaps {name} is its vertical, and its cord pulls too little"
             return f"{fell}, as a body does that no cord holds: {guess}."
@@ -34,9 +34,11 @@ def growth(rows: FileRows) -> str:
         return ""
     parts = np.array_split(np.arange(len(rows.times)), _PARTS)
     reach = np.array([float(np.hypot(*rows.plane[part].T).max()) for part in parts])
-    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > RIVAL * reach[0]:
+    always_grows = (reach[1:] > reach[:-1]).all()
+    growth = float(reach[-1] / reach[0]) if reach[0] else math.inf
+    if not always_grows or not RIVAL < growth < math.inf:
         return ""
-    between = float(rows.times[parts[-1]].mean() - rows.times[parts[0]].mean())
-    fold = between / math.log(reach[-1] / reach[0])
+    first, *_, last = (float(rows.times[part].mean()) for part in parts)
+    fold = (last - first) / math.log(growth)
     grows = f"Its motion grows by a factor of e in {fold:.2g} s"
     return f"{grows}: a force does work, the cord does not hold, or the steps are too long."
