@@ -5,30 +5,31 @@ value of it an explanation may not be found, but none becomes certain.
 """
 
 # Of the tolerance. Smaller residuals are rounding, and steps of a program's own or ours, which no sentence is told by.
+# tests/compare/diagnosis/test_claims.py: test_few_digits_are_certain_and_many_are_one_of_several;
 # tests/compare/diagnosis/test_same_words.py
 FINEST = 1e-3
 
 # Times the rounding of the file: the largest of many rounded numbers is off by as much as this.
-# tests/compare/diagnosis/test_claims.py: test_rounding_is_no_error
+# tests/compare/diagnosis/test_claims.py: test_what_rounding_leaves_is_explained
 ROUNDED = 1.5
 
 # Times the residual: at least as much is left without a part of an explanation that is certain, everything else
 # fitted again. If the tolerance is not reached, the error has to shrink by the square of this before anything is named;
 # the same square holds for each typed cause beside a step error of unknown method. Of the difference between two
 # versions, changes may leave no more than the tenth part.
-# tests/compare/diagnosis/test_claims.py: test_what_is_hardly_needed_is_not_certain;
-# test_a_map_of_a_column_that_is_hardly_needed_is_not_certain; test_a_change_explains_what_lies_between_the_versions
+# tests/compare/diagnosis/test_claims.py: test_a_map_of_a_column_that_is_hardly_needed_is_not_certain;
+# test_an_either_without_which_little_more_is_left_is_not_certain; test_a_change_explains_what_lies_between_the_versions
 NEEDED = 10.0
 
 # Times a residual: what is no more than this is about as good. So are two explanations; one without a cause, which then
 # is not needed; the last rows, predicted from the first; and a column that an explanation leaves worse than it was.
 # Also how near a fall is to g, how much a motion grows, and the share of an error's power that does work.
-# tests/compare/diagnosis/test_claims.py: test_rivals_are_told_beside_each_other;
+# tests/compare/diagnosis/test_claims.py: test_a_map_of_a_column_that_is_hardly_needed_is_not_certain;
 # tests/compare/diagnosis/test_false_causes.py: test_no_cause_is_stated_that_spoils_a_right_column
 RIVAL = 3.0
 
 # Of the rows, from the first one: numbers that are fitted to them have to predict the others.
-# tests/compare/diagnosis/test_claims.py: test_what_does_not_predict_is_not_certain
+# tests/compare/diagnosis/test_claims.py: test_a_slip_that_does_not_predict_is_not_certain
 FIRST_PART = 2 / 3
 
 # Rows for each fitted number: of fewer rows nothing is certain.
@@ -44,7 +45,7 @@ ALTERNATIVES = 3
 CHANCE = 0.01
 
 # Digits of a number that people type, and of a factor.
-# tests/compare/diagnosis/test_claims.py: test_few_digits
+# tests/compare/diagnosis/test_claims.py: test_few_digits; test_a_factor_that_people_type_has_fewer_digits
 MOST_DIGITS = 7
 FACTOR_DIGITS = 4
 
