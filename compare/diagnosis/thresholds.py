@@ -51,7 +51,7 @@ FACTOR_DIGITS = 4
 
 # Changes that a program may have, about: the number of accidents that may be mistaken for a cause. Divided by
 # the chance above, how many times as large a drift has to be without a cause for it to be no accident beside it.
-# tests/compare/diagnosis/test_drift.py; tests/compare/diagnosis/test_wild.py
+# tests/compare/diagnosis/test_claims.py: test_few_digits_are_certain_and_many_are_one_of_several
 CATALOGUE = 80
 
 # Ratio of two errors of an integrator: versions between which it is less have the same step.
