@@ -92,7 +92,7 @@ class Reader:
     def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[CauseReading]:
         """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
         nothing = self._judged((), self.right)
-        search = _Search(self, causes, min(nothing.score, most))
+        search = _CombinationSearch(self, causes, min(nothing.score, most))
         best = [nothing]
         beam = [nothing]
         for _ in range(MOST):
@@ -270,7 +270,7 @@ class Reader:
 
 
 @dataclass
-class _Search:
+class _CombinationSearch:
     """A search for combinations of causes.
 
     Attributes:
