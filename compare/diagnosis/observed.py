@@ -408,7 +408,8 @@ def of_observation(case: FileCase) -> Explanation | None:
         claim = _MapClaim.about(case, maps[0])
         size_m = largest(claim.case.rows.positions - claim.case.truth)
         said = tested(claim, _reported(maps, size_m), claim.case.error)
-        if said is None:
+        # some map makes any few rows
+        if said is None or not claim.enough_rows():
             return None
         residuals[:, maps[0].columns] = claim.left
         if said.stage:
