@@ -80,7 +80,12 @@ def _claims(case: FileCase, rows: FileRows, constants: Constants) -> Iterator[_S
     """Yield the claims that the accelerations of rows propose, each run on the sphere and as a linear model."""
     swing_rate = float(np.linalg.norm(constants.pull)) ** 0.5
     motion = differentiated(rows.times, rows.plane, swing_rate)
-    if motion is None or not float(np.abs(motion.state[:2]).max()) < _LOW * constants.length:
+    begins = case.rows.starts and case.rows.times[0] == 0
+    if (
+        motion is None
+        or not begins
+        or not float(np.abs(motion.state[:2]).max()) < _LOW * constants.length
+    ):
         return
     # whatever a program takes g for, a slip is an error beside that
     effective = replace(
@@ -100,19 +105,15 @@ class _SlipClaim(Claim):
 
     Attributes:
         force: of the program.
-        velocity: vx and vy at the first row in m/s.
     """
 
     force: WrongForce
-    velocity: Array
 
     @classmethod
     def fitted(cls, case: FileCase, force: WrongForce) -> _SlipClaim | None:
-        """Return the claim with coefficients and velocity fitted to the rows; None if there is no such motion."""
+        """Return the claim with the coefficients fitted to the rows; None if there is no such motion."""
         times = case.rows.times
-        first, second, third, *_ = case.rows.plane
-        velocity = (4 * second - third - 3 * first) / (times[2] - times[0])
-        claim = cls(case, case.rows.positions, force, velocity)
+        claim = cls(case, case.rows.positions, force)
         for count in windows(times - times[0], _WINDOWS, _SHORTEST, 2 * _SHORTEST):
             claim = claim._fitted_to(count)
         return claim if math.isfinite(claim.rest) else None
@@ -131,31 +132,28 @@ class _SlipClaim(Claim):
 
     @property
     def _numbers(self) -> Array:
-        """The numbers that are fitted: coefficients, and the velocity at the first row."""
-        return np.array([*self.force.coefficients.values(), *self.velocity])
+        """The numbers that are fitted: the coefficients."""
+        return np.array([*self.force.coefficients.values()])
 
     def _with(self, numbers: Array) -> _SlipClaim:
         """Return the claim with other numbers."""
-        force = self.force.with_errors(numbers[:-2].tolist())
-        return replace(self, force=force, velocity=numbers[-2:])
+        return replace(self, force=self.force.with_errors(numbers.tolist()))
 
     @property
     def _nudges(self) -> Array:
         """By how much each number is moved for its slope."""
-        reach = float(np.abs(self.case.rows.plane).max())
-        speed = math.sqrt(abs(self.force.k.pull[2])) * reach
-        sizes = [abs(number) for number in self.force.coefficients.values()]
-        return _NUDGE * np.array([*sizes, speed, speed])
+        return _NUDGE * np.abs(self._numbers)
 
     def _rows(self, count: int) -> Array:
         """Return x and y in m of its motion in the first `count` rows."""
-        start = np.concatenate([self.case.rows.plane[0], self.velocity])
+        right = self.case.right
+        start = np.array([*self.case.rows.plane[0], right.vx, right.vy])
         return self.force.rows(start, self.case.rows.times[:count])
 
     @property
     def free_numbers(self) -> int:
-        """Its coefficients, and the velocity at the first row."""
-        return len(self.force.coefficients) + 2
+        """Its coefficients."""
+        return len(self.force.coefficients)
 
     def foreseen(self, count: int) -> Array:
         """Return what is left in m if the numbers are fitted to the first `count` rows."""
@@ -169,7 +167,7 @@ class _SlipClaim(Claim):
     @property
     def size_m(self) -> float:
         """The largest distance in m by which it moves the bob."""
-        right = self._with(np.concatenate([np.zeros(len(self.force.coefficients)), self.velocity]))
+        right = self._with(np.zeros(len(self.force.coefficients)))
         count = len(self.case.rows.times)
         return largest(self._rows(count) - right._rows(count))
 

@@ -29,7 +29,7 @@ NEEDED = 10.0
 RIVAL = 3.0
 
 # Of the rows, from the first one: numbers that are fitted to them have to predict the others.
-# tests/compare/diagnosis/test_claims.py: test_a_slip_that_does_not_predict_is_not_certain
+# tests/compare/diagnosis/test_claims.py: test_numbers_that_do_not_predict_are_not_sound
 FIRST_PART = 2 / 3
 
 # Rows for each fitted number: of fewer rows nothing is certain.

@@ -155,8 +155,6 @@ UNTOLD = {
     },  # of 3e-4 m/s², where the rows, 26 to a swing, tell accelerations to 2e-3 m/s²
     "w22": {"frame_x_south", "rounded_rate"},  # odeint leaves as much as both of these
     "w23": {"linear_g"},  # a swing that is slower as it is wider: a phase that drifts
-    # "moves like": fitted to the first rows of a motion that grows, it does not predict the others
-    "w28": {"slip"},
 }
 
 
