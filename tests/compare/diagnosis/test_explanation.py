@@ -634,11 +634,13 @@ def test_in_a_straight_swing_no_term_is_named_that_another_one_replaces() -> Non
 
 def test_a_term_that_no_other_one_replaces_is_named() -> None:
     """An ellipse whose y swings too slowly: the term with y in its equation, and no other."""
+    right = float(np.sqrt(9.80665))
+    pushed = f"release.vy={0.004 * 0.99 * right!r}"
     scene = load_scene(
-        "paris", ["pendulum.length=1", "site.rotation_rate=0", "release.x=0.01", "release.y=0"]
+        "paris",
+        ["pendulum.length=1", "site.rotation_rate=0", "release.x=0.01", "release.y=0", pushed],
     )
     times = 0.1 * np.arange(300)
-    right = np.sqrt(9.80665)
     columns = [0.01 * np.cos(right * times), 0.004 * np.sin(0.99 * right * times)]
     found = told(scene, times, dict(zip("xy", columns, strict=True)), 1e-8)
     assert "in the equation of y, the term with y" in found.explanation.slip
