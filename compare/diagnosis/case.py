@@ -154,7 +154,7 @@ class Explanation:
         elif listed:
             yield f"{BEGIN} (largest effect first)"
         for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
-            yield f"{'-' if listed else BEGIN} {cause.text}: {cause.size_m:.3g} m"
+            yield f"{'-' if listed else BEGIN} {cause.text}: off by {cause.size_m:.3g} m"
             yield from _advised(cause)
         if any(cause.stage == AS_IF for cause in self.causes):
             yield 'Of what it "moves like" another number, a clock, a step or another term may be the cause.'
@@ -165,7 +165,7 @@ class Explanation:
             yield f"Next: {self.next_step}"
 
     def _rest(self) -> Iterator[str]:
-        """Yield what is left once all is put right, or that nothing is known."""
+        """Yield the error once all is corrected, or that nothing is known."""
         # which the rounding of a file, say, may be by itself
         enough = self.corrected_m <= self.allowed_m
         corrected = [part for part in self.conventions if enough or part.id not in UNCORRECTED]
@@ -177,14 +177,14 @@ class Explanation:
         these = "this" if len(self.causes or self.conventions) == 1 else "all this"
         # a smaller rest is rounding, and not the same on every processor
         rounding_m = self.allowed_m / 1000
-        left = f"less than {rounding_m:.1g}"
+        left = f"below {rounding_m:.1g} m"
         if self.corrected_m > rounding_m:
-            left = f"{self.corrected_m:.2g}"
+            left = f"{self.corrected_m:.2g} m"
         tolerances = self.corrected_m / self.allowed_m
         beyond = ""
         if tolerances > 1:
-            beyond = f", {tolerances:.2g} tolerances: no known mistake explains them"
-        yield f"With {these} put right, {left} m are left{beyond}."
+            beyond = f", {tolerances:.2g} tolerances: no known mistake explains it"
+        yield f"With {these} corrected, the error is {left}{beyond}."
 
 
 def _advised(part: Deviation) -> Iterator[str]:

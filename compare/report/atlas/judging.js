@@ -212,7 +212,7 @@ function firstWrongPlace(error) {
 function suspicions(columns, { rows, golden }, errors, truth) {
   const { words } = truth;
   const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
-  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: put right, ${rest.toPrecision(2)} m are left.`] : []);
+  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: corrected, the error is ${rest.toPrecision(2)} m.`] : []);
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
       if (!unit && !axes) continue;
@@ -245,7 +245,7 @@ function unitOfTime(columns, truth) {
     const all = [...columns.t.keys()];
     if (each > 1 && truth.at && left(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
     const rest = left(all);
-    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: put right, ${rest.toPrecision(2)} m are left.`];
+    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: corrected, the error is ${rest.toPrecision(2)} m.`];
   }
   return [];
 }

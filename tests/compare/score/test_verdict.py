@@ -124,7 +124,7 @@ def test_the_lines_and_the_document_tell_the_cause_the_reading_and_the_note(told
     (cause,) = data["causes"]
     assert cause["id"] == "site.gravity" and cause["value"] == pytest.approx(9.8068, rel=1e-9)
     assert cause["text"].removeprefix("your program ") in "\n".join(lines)
-    left = line_of(lines, "With this put right, less than")
+    left = line_of(lines, "With this corrected, the error is below")
     assert data["corrected"]["max_error_m"] < numbers(left)[0] < 1e-6 < data["max_error_m"]
     assert [f"Reading: {one['text']}." for one in data["conventions"]] == [
         x for x in lines if x.startswith("Reading")

@@ -182,7 +182,7 @@ def test_trajectories_are_judged_as_score_does(reading, tmp_path, size):
         if name not in texts:
             continue
         *_, said = found[name]
-        about, left = re.fullmatch(r"(.*): put right, (\S+) m are left\.", said).groups()
+        about, left = re.fullmatch(r"(.*): corrected, the error is (\S+) m\.", said).groups()
         assert about == text and float(left) <= most_left(golden, name), said
     assert found["wrong"] == [] == found["right"]
 

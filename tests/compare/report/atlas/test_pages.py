@@ -324,7 +324,7 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_pat
     ].replace("1.00e", "1e")
     assert "10514 matched, 0 missed, 0 extra" in texts[1]
     assert f"10513 matched, 1 missed ({times[41]:.6f} s)" in texts[2]
-    assert "Your file writes north as x and east as y: put right, " in texts[3]
+    assert "Your file writes north as x and east as y: corrected, the error is " in texts[3]
     assert "144 rows" in texts[4] if beside else "All are 7.00 s after one" in texts[4]
     assert "fields, and the first row has 3" in texts[5]
 
