@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from reference import InputError, Scene
 from reference.errors import did_you_mean
 from reference.model.start import Start
+from reference.numbers.precision import GUARD_BITS, bits_of
 from reference.system.interruption import terminable
 
 from .text import MAX_BYTES
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
 
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 SETTING = "{setting}"  # stands in a command for the step, tolerance or precision that is varied
-PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
+# of a number that follows from a scene's, at least: quadruple precision has 34
+PLACEHOLDER_DIGITS = 36
 TIMEOUT_S = 600.0
 REPEATS = 3
 # a program that takes longer than this, in s, is timed once, by the run that is scored
@@ -91,12 +93,17 @@ class CrashedError(InputError):
 
 
 def placeholders(scene: Scene) -> dict[str, str]:
-    """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
-    start = Start.of(scene.exact, PLACEHOLDER_BITS)
+    """Return the scene's value of each placeholder that a command may use.
+
+    A number is as written in the scene. One that follows from others, such as x0 of a release by
+    angles, has the scene's digits, or as many as quadruple precision if that is more.
+    """
+    digits = max(PLACEHOLDER_DIGITS, scene.run.digits)
+    start = Start.of(scene.exact, bits_of(digits) + GUARD_BITS)
     names = ("x0", "y0", "z0", "vx0", "vy0", "vz0")
     words = {}
     for name, value in zip(names, (*start.position, *start.velocity), strict=True):
-        words[name] = repr(float(value))
+        words[name] = start.ctx.nstr(value, digits)
     release = scene.release.model_dump(exclude_none=True)
     words |= {f"{name}0": text for name, text in release.items() if f"{name}0" in words}
     for name in ("angle", "azimuth", "angle_rate", "azimuth_rate"):
