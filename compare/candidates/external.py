@@ -147,8 +147,15 @@ def arguments(command: str, scene: Scene) -> list[str]:
     return [_PLACEHOLDER.sub(value, word) for word in words]
 
 
-def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryIO, float, float]:
+def run_program(
+    words: list[str], timeout_s: float = TIMEOUT_S, limit: str = "--timeout"
+) -> tuple[BinaryIO, float, float]:
     """Run a program once and return its stdout (an open file, at its start), CPU seconds and wall seconds.
+
+    Args:
+        words: the program and its arguments.
+        timeout_s: wall-clock seconds that it may take.
+        limit: what the user changes to allow more, in words; "" if nothing does.
 
     Raises:
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it
@@ -167,7 +174,7 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
         try:
             guard(process.pid)
             with terminable():
-                usage = _end_of(process, words, output, errors, timeout_s)
+                usage = _end_of(process, words, output, errors, timeout_s, limit)
         finally:
             wall = time.monotonic() - start
             _end_all(process.pid, mark)  # what it left running in the background
@@ -179,6 +186,11 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
+
+
+def failure_of(error: InputError) -> str:
+    """Return why a program failed, for the row of a report: its command needs no option's name there."""
+    return str(error).removeprefix("--run: ")
 
 
 def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) -> Popen[bytes]:
@@ -230,7 +242,12 @@ def _guarded(mark: str) -> Iterator[Callable[[int], None]]:
 
 
 def _end_of(
-    process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float
+    process: Popen[bytes],
+    words: list[str],
+    output: BinaryIO,
+    errors: BinaryIO,
+    timeout_s: float,
+    limit: str,
 ) -> Any:
     """Wait for a process, and return its resources.
 
@@ -247,7 +264,8 @@ def _end_of(
             return usage
         waited = time.monotonic() - start
         if waited > timeout_s:
-            expected = f"a program that ends within {timeout_s:g} s (--timeout)"
+            named_limit = f" ({limit})" if limit else ""
+            expected = f"a program that ends within {timeout_s:g} s{named_limit}"
             raise OutOfTimeError("--run", shlex.join(words), expected, _tail(errors))
         if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
             expected = f"at most {MAX_BYTES} bytes of output"

@@ -253,5 +253,5 @@ def _accumulated(row: Row) -> str:
 
 
 def _sentence(parts: list[str]) -> str:
-    text = "; ".join(part for part in parts if part)
+    text = "; ".join(part.rstrip(".") for part in parts if part)
     return text[:1].upper() + text[1:] + "." if text else ""
