@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reference import InputError, load_scene
+from reference import InputError
 from reference.commands.options import Conflict, as_command, refuse_conflicts
 from reference.commands.terminal import (
     BESIDE_RANGES,
@@ -28,7 +28,7 @@ from reference.commands.terminal import (
 )
 from reference.errors import NOTHING, Described
 
-from .options import announce, check_positive, listed
+from .options import announce, check_positive, listed, scene_named
 
 if TYPE_CHECKING:
     from reference import Ranges, Scene
@@ -257,7 +257,7 @@ class ScoreOptions:
             return self.named_ranges.scene
         fields = {"--t-end": ("run.t_end", self.t_end), "--inputs": ("inputs", self.reading)}
         chosen_values = replacements(self.set_, fields, _FIELDS_WITHOUT_EFFECT, announce)
-        return load_scene(self.scene_word, chosen_values)
+        return scene_named(self.scene_word, chosen_values)
 
     @cached_property
     def ranges(self) -> Ranges | None:

@@ -36,6 +36,7 @@ from .options import (
     numbers,
     programs_of,
     resumes,
+    scene_named,
 )
 
 _WRITING = "writing the report"
@@ -167,7 +168,7 @@ def _scene(options: StudyOptions) -> Scene:
     else:
         unused = OF_METHODS
     fields = {"--t-end": ("run.t_end", options.t_end)}
-    return load_scene(options.scene_word, replacements(options.set_, fields, unused))
+    return scene_named(options.scene_word, replacements(options.set_, fields, unused))
 
 
 def _study_methods(scene: Scene, options: StudyOptions) -> None:
