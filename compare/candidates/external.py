@@ -84,11 +84,22 @@ class Timing:
     warm: bool = True
 
 
-class OutOfTimeError(InputError):
+class ProgramError(InputError):
+    """A program could not be started, failed, or had to be stopped.
+
+    `reason` says why, without its command, for the row of a report.
+    """
+
+    def __init__(self, got: str, expected: str, reason: str, advice: str) -> None:
+        super().__init__("--run", got, expected, advice)
+        self.reason = f"{reason}. {advice}"
+
+
+class OutOfTimeError(ProgramError):
     """A program took longer than allowed and was stopped."""
 
 
-class CrashedError(InputError):
+class CrashedError(ProgramError):
     """A program was ended by a signal."""
 
 
@@ -180,17 +191,17 @@ def run_program(
             _end_all(process.pid, mark)  # what it left running in the background
             process.wait()
         if process.returncode:
-            got = f"exit status {process.returncode} of {shlex.join(words)}"
-            error = CrashedError if process.returncode < 0 else InputError
-            raise error("--run", got, "exit status 0", _tail(errors))
+            ended = f"exit status {process.returncode}"
+            error = CrashedError if process.returncode < 0 else ProgramError
+            raise error(f"{ended} of {shlex.join(words)}", "exit status 0", ended, _tail(errors))
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
 
 
 def failure_of(error: InputError) -> str:
-    """Return why a program failed, for the row of a report: its command needs no option's name there."""
-    return str(error).removeprefix("--run: ")
+    """Return why there is no result of a program, for the row of a report."""
+    return error.reason if isinstance(error, ProgramError) else str(error)
 
 
 def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) -> Popen[bytes]:
@@ -213,7 +224,7 @@ def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) ->
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else error
         expected = "a program that can be started"
-        raise InputError("--run", words[0], expected, f"{why}.") from None
+        raise ProgramError(words[0], expected, "it cannot be started", f"{why}.") from None
 
 
 @contextlib.contextmanager
@@ -264,12 +275,14 @@ def _end_of(
             return usage
         waited = time.monotonic() - start
         if waited > timeout_s:
-            named_limit = f" ({limit})" if limit else ""
-            expected = f"a program that ends within {timeout_s:g} s{named_limit}"
-            raise OutOfTimeError("--run", shlex.join(words), expected, _tail(errors))
+            within = f"within {timeout_s:g} s ({limit})" if limit else f"within {timeout_s:g} s"
+            expected = f"a program that ends {within}"
+            reason = f"it did not end {within}"
+            raise OutOfTimeError(shlex.join(words), expected, reason, _tail(errors))
         if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
             expected = f"at most {MAX_BYTES} bytes of output"
-            raise InputError("--run", shlex.join(words), expected, _tail(errors))
+            reason = f"it wrote more than {MAX_BYTES} bytes"
+            raise ProgramError(shlex.join(words), expected, reason, _tail(errors))
         time.sleep(min(0.02, waited / 50))
 
 

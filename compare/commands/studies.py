@@ -232,7 +232,8 @@ def _study_approximations(scene: Scene, options: StudyOptions) -> None:
 def stability(options: StabilityOptions) -> None:
     """Run methods, and your program, on the difficult scenes.
 
-    For each run: digits kept, or how it failed; with the same --out a study resumes.
+    Prints how many runs of each method failed, and of your program the digits kept on each scene.
+    --out and --json have all runs; with the same --out a study resumes.
     """
     refuse_conflicts(options, STABILITY_CONFLICTS)
     from ..report.stability_page import REPORT, document_of

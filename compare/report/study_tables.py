@@ -159,12 +159,17 @@ def failures(rows: Sequence[Row]) -> Html | None:
     return PageTable(columns, cells, ["failed"] * len(cells)).html(_CAPTIONS["failed"])
 
 
-def words(statuses: Collection[Status]) -> Html:
-    """Return the meaning of the words that stand for these statuses, and what to do about each."""
+def words(statuses: Collection[Status], meanings: Mapping[Status, str] | None = None) -> Html:
+    """Return the meaning of the words that stand for these statuses, and what to do about each.
+
+    `meanings` are those that a report defines more exactly.
+    """
     columns = {"word": "", "meaning": "prose", "what to do": "prose"}
-    rows = [
-        (status.words, status.meaning, status.advice) for status in Status if status in statuses
-    ]
+    exact = meanings or {}
+    rows = []
+    for status in Status:
+        if status in statuses:
+            rows.append((status.words, exact.get(status, status.meaning), status.advice))
     return PageTable(columns, rows).html()
 
 
