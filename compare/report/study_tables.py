@@ -28,6 +28,10 @@ from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, senten
 _FRONT_MARK = "●"
 _PART_MARK = "~"
 _ABSENT = "–"
+_OF_PROGRAMS = (
+    "Your program: CPU seconds of the whole process; transits are not measured, and h drift needs "
+    "its velocities"
+)
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is
 # lower
@@ -248,6 +252,8 @@ def text_table(document: dict[str, Any]) -> str:
         "error (see --limit)"
     )
     lines += ["", *_measured_as_text(rows, bound_m), "", *as_lines(legend)]
+    if document["programs"]:
+        lines += as_lines(_OF_PROGRAMS)
     statuses = {row.status for row in rows if row.failed}
     if statuses:
         lines += ["", "Failed:", *_failed_as_text(rows), ""]
