@@ -48,6 +48,11 @@ FOLDER = option(
 PROGRAM = option(
     "--run", "Study your program too; {setting} is its step. May be repeated.", "'COMMAND'"
 )
+PROGRAM_OF_STABILITY = option(
+    "--run",
+    "Study your program too; {setting} is its step: 2π/200 over a scene's fastest rate. May be repeated.",
+    "'COMMAND'",
+)
 NAME = option(
     "--name", "Name of the program of --run, one for each (default: its file's name).", "WORD"
 )
@@ -55,6 +60,7 @@ NAME = option(
 Methods = Annotated[str | None, METHODS]
 Folder = Annotated[Path | None, FOLDER]
 Commands = Annotated[list[str] | None, PROGRAM]
+CommandsOfStability = Annotated[list[str] | None, PROGRAM_OF_STABILITY]
 Names = Annotated[list[str] | None, NAME]
 
 

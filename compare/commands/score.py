@@ -461,7 +461,8 @@ def _outcomes(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
 
 
 def _outcome_of_program(options: ScoreOptions, judging: Judging, run: str) -> Outcome:
-    """Run a program by its command and judge its output."""
+    """Run a program by its command and judge its output; tell the step that is chosen for it."""
+    from ..candidates.external import SETTING, STEPS
     from .experimenting import Runnable
 
     timeout_s = TIMEOUT_S if options.timeout is None else options.timeout
@@ -469,6 +470,8 @@ def _outcome_of_program(options: ScoreOptions, judging: Judging, run: str) -> Ou
     program = Runnable(options.scene, run, options.setting, timeout_s, options.out)
     if options.experiments:
         program.check()
+    if options.setting is None and SETTING in run:
+        announce(f"{SETTING} is {program.step:.6g} s: {STEPS} steps a period, or more (--setting)")
     name = options.name or "the program"
     return judging.program(program, name, options.transits, repeats, options.experiments)
 

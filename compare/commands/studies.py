@@ -25,6 +25,7 @@ from reference.system.channel import ACTIVITY
 
 from .options import (
     Commands,
+    CommandsOfStability,
     Folder,
     Methods,
     Names,
@@ -112,7 +113,7 @@ class StabilityOptions:
 
     scenes: Annotated[str | None, SCENES] = None
     methods: Methods = None
-    run: Commands = None
+    run: CommandsOfStability = None
     name: Names = None
     limit: Annotated[float, STABILITY_LIMIT] = STABILITY_LIMIT_S
     long: Annotated[bool, LONG] = False
@@ -145,7 +146,8 @@ STABILITY_CONFLICTS = [
 def study(options: StudyOptions) -> None:
     """Measure error against run time.
 
-    Every method is run over its settings; with the same --out a study resumes.
+    Every method is run over its settings, which takes minutes: fewer --methods, --no-formulations,
+    a shorter --t-end and a lower --limit save time. With the same --out a study resumes.
     """
     scene = _scene(options)
     refuse_conflicts(options, STUDY_CONFLICTS)
