@@ -11,7 +11,6 @@ import typer
 from reference import InputError, Scene, load_scene
 from reference.commands.terminal import emit, option
 from reference.dataset.place import changes_in, golden_folder
-from reference.scenes.scene import Words
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -84,7 +83,7 @@ def numbers(text: str, field: str) -> list[float]:
     return values
 
 
-def scene_named(word: str, values: Words) -> Scene:
+def scene_named(word: str, values: Sequence[str]) -> Scene:
     """Return the scene of this id or TOML file, with fields replaced.
 
     Raises:

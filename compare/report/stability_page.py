@@ -31,12 +31,13 @@ from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
 _COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)  # statuses with a count of their own
 _NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 _LEAD_OF_PROGRAMS = (
-    f" A program of --run was asked for {DIGITS:g} digits: a millionth of the amplitude."
+    f" A program of --run was asked for {DIGITS:g} digits: a millionth of the amplitude. Its CPU "
+    "seconds are those of the whole process."
 )
 _LOST = math.log10(WRONG)  # digits below those asked for with which a run still counts as ok
 _OK = (
     f"its error is at most {WRONG} times what was asked for, which is {_LOST:g} digits fewer "
-    "(`foucault score` allows a program no more than the millionth itself)"
+    "(`foucault score` allows only a millionth of the amplitude)"
 )
 _PAIRS = (
     ("scipy_radau", "scipy_dop853"),
