@@ -1,6 +1,7 @@
 /* A Foucault pendulum to start from: the full equations by the classical Runge-Kutta method, in SI units.
    cc -O2 docs/pendulum.c -o pendulum -lm && ./pendulum x0 y0 length latitude gravity rotation_rate t_end step
    Axes: x east, y north, z up, origin at the suspension. Prints t,x,y,z every 60 s, released at rest.
+   For swings below the suspension: where a rod is pushed, put r and v back on the sphere after each step (docs/physics.md).
    The inverse flattening 298.257223564 is the paper's misprint of WGS 84's 298.257223563. */
 #include <math.h>
 #include <stdio.h>

@@ -139,7 +139,7 @@ PUBLIC = {
     "replacements scene_argument stoppable widths_by_name",
     "reference.dataset.golden": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
-    "reference.dataset.place": "RANGES changes golden_folder",
+    "reference.dataset.place": "RANGES changes changes_in golden_folder",
     "reference.dataset.render": "MEANING",
     "reference.dataset.sheets": "by_field",
     "reference.engines.heyoka.conversions": "Numbers",

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 from reference import InputError, Scene
 from reference.errors import did_you_mean
 from reference.model.start import Start
+from reference.numbers.precision import GUARD_BITS, bits_of
 from reference.system.interruption import terminable
 
 from .text import MAX_BYTES
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
 
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
 SETTING = "{setting}"  # stands in a command for the step, tolerance or precision that is varied
-PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
+# of a number that follows from a scene's, at least: quadruple precision has 34
+PLACEHOLDER_DIGITS = 36
 TIMEOUT_S = 600.0
 REPEATS = 3
 # a program that takes longer than this, in s, is timed once, by the run that is scored
@@ -82,21 +84,37 @@ class Timing:
     warm: bool = True
 
 
-class OutOfTimeError(InputError):
+class ProgramError(InputError):
+    """A program could not be started, failed, or had to be stopped.
+
+    `reason` says why, without its command, for the row of a report.
+    """
+
+    def __init__(self, got: str, expected: str, reason: str, advice: str) -> None:
+        super().__init__("--run", got, expected, advice)
+        self.reason = f"{reason}. {advice}"
+
+
+class OutOfTimeError(ProgramError):
     """A program took longer than allowed and was stopped."""
 
 
-class CrashedError(InputError):
+class CrashedError(ProgramError):
     """A program was ended by a signal."""
 
 
 def placeholders(scene: Scene) -> dict[str, str]:
-    """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
-    start = Start.of(scene.exact, PLACEHOLDER_BITS)
+    """Return the scene's value of each placeholder that a command may use.
+
+    A number is as written in the scene. One that follows from others, such as x0 of a release by
+    angles, has the scene's digits, or as many as quadruple precision if that is more.
+    """
+    digits = max(PLACEHOLDER_DIGITS, scene.run.digits)
+    start = Start.of(scene.exact, bits_of(digits) + GUARD_BITS)
     names = ("x0", "y0", "z0", "vx0", "vy0", "vz0")
     words = {}
     for name, value in zip(names, (*start.position, *start.velocity), strict=True):
-        words[name] = repr(float(value))
+        words[name] = start.ctx.nstr(value, digits)
     release = scene.release.model_dump(exclude_none=True)
     words |= {f"{name}0": text for name, text in release.items() if f"{name}0" in words}
     for name in ("angle", "azimuth", "angle_rate", "azimuth_rate"):
@@ -140,8 +158,15 @@ def arguments(command: str, scene: Scene) -> list[str]:
     return [_PLACEHOLDER.sub(value, word) for word in words]
 
 
-def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryIO, float, float]:
+def run_program(
+    words: list[str], timeout_s: float = TIMEOUT_S, limit: str = "--timeout"
+) -> tuple[BinaryIO, float, float]:
     """Run a program once and return its stdout (an open file, at its start), CPU seconds and wall seconds.
+
+    Args:
+        words: the program and its arguments.
+        timeout_s: wall-clock seconds that it may take.
+        limit: what the user changes to allow more, in words; "" if nothing does.
 
     Raises:
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it
@@ -160,18 +185,23 @@ def run_program(words: list[str], timeout_s: float = TIMEOUT_S) -> tuple[BinaryI
         try:
             guard(process.pid)
             with terminable():
-                usage = _end_of(process, words, output, errors, timeout_s)
+                usage = _end_of(process, words, output, errors, timeout_s, limit)
         finally:
             wall = time.monotonic() - start
             _end_all(process.pid, mark)  # what it left running in the background
             process.wait()
         if process.returncode:
-            got = f"exit status {process.returncode} of {shlex.join(words)}"
-            error = CrashedError if process.returncode < 0 else InputError
-            raise error("--run", got, "exit status 0", _tail(errors))
+            ended = f"exit status {process.returncode}"
+            error = CrashedError if process.returncode < 0 else ProgramError
+            raise error(f"{ended} of {shlex.join(words)}", "exit status 0", ended, _tail(errors))
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
+
+
+def failure_of(error: InputError) -> str:
+    """Return why there is no result of a program, for the row of a report."""
+    return error.reason if isinstance(error, ProgramError) else str(error)
 
 
 def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) -> Popen[bytes]:
@@ -194,7 +224,7 @@ def _started(words: list[str], mark: str, output: BinaryIO, errors: BinaryIO) ->
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else error
         expected = "a program that can be started"
-        raise InputError("--run", words[0], expected, f"{why}.") from None
+        raise ProgramError(words[0], expected, "it cannot be started", f"{why}.") from None
 
 
 @contextlib.contextmanager
@@ -223,7 +253,12 @@ def _guarded(mark: str) -> Iterator[Callable[[int], None]]:
 
 
 def _end_of(
-    process: Popen[bytes], words: list[str], output: BinaryIO, errors: BinaryIO, timeout_s: float
+    process: Popen[bytes],
+    words: list[str],
+    output: BinaryIO,
+    errors: BinaryIO,
+    timeout_s: float,
+    limit: str,
 ) -> Any:
     """Wait for a process, and return its resources.
 
@@ -240,11 +275,14 @@ def _end_of(
             return usage
         waited = time.monotonic() - start
         if waited > timeout_s:
-            expected = f"a program that ends within {timeout_s:g} s (--timeout)"
-            raise OutOfTimeError("--run", shlex.join(words), expected, _tail(errors))
+            within = f"within {timeout_s:g} s ({limit})" if limit else f"within {timeout_s:g} s"
+            expected = f"a program that ends {within}"
+            reason = f"it did not end {within}"
+            raise OutOfTimeError(shlex.join(words), expected, reason, _tail(errors))
         if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
             expected = f"at most {MAX_BYTES} bytes of output"
-            raise InputError("--run", shlex.join(words), expected, _tail(errors))
+            reason = f"it wrote more than {MAX_BYTES} bytes"
+            raise ProgramError(shlex.join(words), expected, reason, _tail(errors))
         time.sleep(min(0.02, waited / 50))
 
 

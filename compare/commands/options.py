@@ -8,8 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from reference import InputError, Scene
+from reference import InputError, Scene, load_scene
 from reference.commands.terminal import emit, option
+from reference.dataset.place import changes_in, golden_folder
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -46,6 +47,11 @@ FOLDER = option(
 PROGRAM = option(
     "--run", "Study your program too; {setting} is its step. May be repeated.", "'COMMAND'"
 )
+PROGRAM_OF_STABILITY = option(
+    "--run",
+    "Study your program too; {setting} is its step: 2π/200 over a scene's fastest rate. May be repeated.",
+    "'COMMAND'",
+)
 NAME = option(
     "--name", "Name of the program of --run, one for each (default: its file's name).", "WORD"
 )
@@ -53,6 +59,7 @@ NAME = option(
 Methods = Annotated[str | None, METHODS]
 Folder = Annotated[Path | None, FOLDER]
 Commands = Annotated[list[str] | None, PROGRAM]
+CommandsOfStability = Annotated[list[str] | None, PROGRAM_OF_STABILITY]
 Names = Annotated[list[str] | None, NAME]
 
 
@@ -74,6 +81,34 @@ def numbers(text: str, field: str) -> list[float]:
     if not values or not all(0 < value < float("inf") for value in values):
         raise InputError(field, text, "positive numbers", "Separate numbers by commas.")
     return values
+
+
+def scene_named(word: str, values: Sequence[str]) -> Scene:
+    """Return the scene of this id or TOML file, with fields replaced.
+
+    Raises:
+        InputError: there is no such scene, or a field is wrong. Of a dataset it names the scene.
+    """
+    from reference import load
+    from reference.dataset.manifest import MANIFEST
+
+    try:
+        return load_scene(word, values)
+    except InputError as error:
+        if error.field != "SCENE" or not (golden_folder(word) / MANIFEST).is_file():
+            raise
+        advice = f"It is a dataset. Name its scene: {scene_words(load(word).manifest.id)}"
+        raise InputError(error.field, error.got, error.expected, advice) from None
+
+
+def scene_words(dataset_id: str) -> str:
+    """Return the words of a command that name the scene of a dataset, by the dataset's id."""
+    name, _, _ = dataset_id.partition("+")
+    scene_id, _, reading = name.partition(".")
+    fields = changes_in(dataset_id)
+    if reading:
+        fields = [f"inputs={reading}", *fields]
+    return " ".join([scene_id, *(f"--set {field}" for field in fields)])
 
 
 def check_positive(option: str, value: float | None, unit: str = "seconds") -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reference import InputError, load_scene
+from reference import InputError
 from reference.commands.options import Conflict, as_command, refuse_conflicts
 from reference.commands.terminal import (
     BESIDE_RANGES,
@@ -28,7 +28,7 @@ from reference.commands.terminal import (
 )
 from reference.errors import NOTHING, Described
 
-from .options import announce, check_positive, listed
+from .options import announce, check_positive, listed, scene_named
 
 if TYPE_CHECKING:
     from reference import Ranges, Scene
@@ -257,7 +257,7 @@ class ScoreOptions:
             return self.named_ranges.scene
         fields = {"--t-end": ("run.t_end", self.t_end), "--inputs": ("inputs", self.reading)}
         chosen_values = replacements(self.set_, fields, _FIELDS_WITHOUT_EFFECT, announce)
-        return load_scene(self.scene_word, chosen_values)
+        return scene_named(self.scene_word, chosen_values)
 
     @cached_property
     def ranges(self) -> Ranges | None:
@@ -461,7 +461,8 @@ def _outcomes(options: ScoreOptions, judging: Judging) -> Iterator[Outcome]:
 
 
 def _outcome_of_program(options: ScoreOptions, judging: Judging, run: str) -> Outcome:
-    """Run a program by its command and judge its output."""
+    """Run a program by its command and judge its output; tell the step that is chosen for it."""
+    from ..candidates.external import SETTING, STEPS
     from .experimenting import Runnable
 
     timeout_s = TIMEOUT_S if options.timeout is None else options.timeout
@@ -469,6 +470,8 @@ def _outcome_of_program(options: ScoreOptions, judging: Judging, run: str) -> Ou
     program = Runnable(options.scene, run, options.setting, timeout_s, options.out)
     if options.experiments:
         program.check()
+    if options.setting is None and SETTING in run:
+        announce(f"{SETTING} is {program.step:.6g} s: {STEPS} steps a period, or more (--setting)")
     name = options.name or "the program"
     return judging.program(program, name, options.transits, repeats, options.experiments)
 

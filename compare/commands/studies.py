@@ -25,6 +25,7 @@ from reference.system.channel import ACTIVITY
 
 from .options import (
     Commands,
+    CommandsOfStability,
     Folder,
     Methods,
     Names,
@@ -36,6 +37,7 @@ from .options import (
     numbers,
     programs_of,
     resumes,
+    scene_named,
 )
 
 _WRITING = "writing the report"
@@ -111,7 +113,7 @@ class StabilityOptions:
 
     scenes: Annotated[str | None, SCENES] = None
     methods: Methods = None
-    run: Commands = None
+    run: CommandsOfStability = None
     name: Names = None
     limit: Annotated[float, STABILITY_LIMIT] = STABILITY_LIMIT_S
     long: Annotated[bool, LONG] = False
@@ -144,7 +146,8 @@ STABILITY_CONFLICTS = [
 def study(options: StudyOptions) -> None:
     """Measure error against run time.
 
-    Every method is run over its settings; with the same --out a study resumes.
+    Every method is run over its settings, which takes minutes: fewer --methods, --no-formulations,
+    a shorter --t-end and a lower --limit save time. With the same --out a study resumes.
     """
     scene = _scene(options)
     refuse_conflicts(options, STUDY_CONFLICTS)
@@ -167,7 +170,7 @@ def _scene(options: StudyOptions) -> Scene:
     else:
         unused = OF_METHODS
     fields = {"--t-end": ("run.t_end", options.t_end)}
-    return load_scene(options.scene_word, replacements(options.set_, fields, unused))
+    return scene_named(options.scene_word, replacements(options.set_, fields, unused))
 
 
 def _study_methods(scene: Scene, options: StudyOptions) -> None:
@@ -231,7 +234,8 @@ def _study_approximations(scene: Scene, options: StudyOptions) -> None:
 def stability(options: StabilityOptions) -> None:
     """Run methods, and your program, on the difficult scenes.
 
-    For each run: digits kept, or how it failed; with the same --out a study resumes.
+    Prints how many runs of each method failed, and of your program the digits kept on each scene.
+    --out and --json have all runs; with the same --out a study resumes.
     """
     refuse_conflicts(options, STABILITY_CONFLICTS)
     from ..report.stability_page import REPORT, document_of

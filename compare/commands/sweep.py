@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reference import InputError, UnreachableError, load_scene
+from reference import InputError, UnreachableError
 from reference.commands.options import Conflict, refuse_conflicts
 from reference.commands.progress import progress
 from reference.commands.terminal import (
@@ -32,7 +32,7 @@ from reference.scenes.fields import LEVELS
 from reference.status import Status
 from reference.system.workers import usable_cores
 
-from .options import announce
+from .options import announce, scene_named
 
 if TYPE_CHECKING:
     from reference import Swept
@@ -165,7 +165,7 @@ def _request(options: SweepOptions) -> Request:
 
     sections = ",".join(options.section) if options.section else None
     fields = {"--t-end": ("run.t_end", options.t_end), "--section": ("run.sections", sections)}
-    scene = load_scene(options.scene_word, replacements(options.set_, fields, _NO_GRID))
+    scene = scene_named(options.scene_word, replacements(options.set_, fields, _NO_GRID))
     request = checked_request(
         scene, options.over or (), options.rows, options.out, _settings(options)
     )

@@ -23,7 +23,7 @@ from reference import InputError, IntegrationError
 from reference.system.cache import kept
 from reference.system.workspace import workspace
 
-from ..candidates.external import run_program
+from ..candidates.external import failure_of, run_program
 from .library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
 from .method import (
     HIGH_ORDER,
@@ -76,9 +76,9 @@ def prepare(
             numbers.tofile(file)
             file.flush()
             try:
-                output, _, _ = run_program([str(program), file.name])
+                output, _, _ = run_program([str(program), file.name], limit="")
             except InputError as error:  # it crashed, or was ended
-                return failed(problem, str(error))
+                return failed(problem, failure_of(error))
         with output:
             answer = output.read()
         cpu_s, steps, calls, rows = np.frombuffer(answer, count=HEAD).tolist()

@@ -12,7 +12,7 @@ from reference.numbers.precision import Array
 from reference.plain_text import shortened
 from reference.status import Status
 
-from ..candidates.external import SETTING, arguments, run_program
+from ..candidates.external import SETTING, arguments, failure_of, run_program
 from ..candidates.read import read_stream
 from .method import Method, RunOutcome, Work, failed, leading
 from .rhs.problem import Problem
@@ -60,12 +60,12 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
 
     def work() -> RunOutcome:
         try:
-            output, cpu_s, _ = run_program(words)
+            output, cpu_s, _ = run_program(words, limit="")
             with output:
                 candidate = read_stream(output, "the program's output")
             states = _at(problem, candidate.t, candidate.columns)
         except InputError as error:  # a study reports a program that fails as a row
-            return failed(problem, str(error))
+            return failed(problem, failure_of(error))
         if not len(states):
             return failed(problem, "the output does not begin at t = 0")
         status, reason = Status.OK, ""

@@ -43,6 +43,7 @@ class Family(StrEnum):
     Its value is the panel's title.
     """
 
+    USERS = "yours: --run, --candidates"
     PAPER = "the paper's, fixed step"
     GEOMETRIC = "geometric, fixed step"
     MANY_DIGITS = "many digits"

@@ -167,6 +167,8 @@ def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[
 def sentences(document: dict[str, Any]) -> list[str]:
     """Return the main results: the cheapest method at each error reached, and the cost of digits.
 
+    Each program or file of the user's has a sentence of its own.
+
     A study of precisions has only the cost of digits: what was measured, the price of a further
     digit, and the power law.
     """
@@ -176,7 +178,8 @@ def sentences(document: dict[str, Any]) -> list[str]:
     if of_digits(rows, bound_m):
         prices = [_prices(curve, bound_m, t_end) for curve in curves(rows)]
     else:
-        prices = list(_cheapest(rows, bound_m))
+        own = [*document.get("programs", ()), *document.get("candidates", ())]
+        prices = [*_cheapest(rows, bound_m), *_of_the_users(own, rows, bound_m)]
     laws = costs_of_digits(rows, bound_m)
     fits = [cost_sentence(label, law, t_end) for label, law in laws.items()]
     return [sentence for sentence in (*prices, *fits) if sentence]
@@ -241,6 +244,39 @@ def _sentence(rows: Sequence[Row], where: str, costs: Sequence[Cost], bound_m: f
         return f"{head}."
     best_m = min(error_of(row, bound_m) for row in paper_rows)
     return f"{head}; {_PAPER_NAME} does not reach it ({best_m:.1e} m at best)."
+
+
+def _of_the_users(names: Sequence[str], rows: Sequence[Row], bound_m: float) -> Iterator[str]:
+    """Yield for each program or file of the user's what it costs at each error, compared with the cheapest."""
+    for curve in curves(rows):
+        if curve.method not in names:
+            continue
+        costs = []
+        for error_m in TARGETS_M:
+            cost_s = cost_at(curve, error_m, bound_m)
+            if cost_s is not None:
+                cheapest, least_s = costs_at(rows, error_m, bound_m)[0]
+                compared = _compared(cost_s / least_s, cheapest)
+                costs.append(f"{seconds(cost_s)} at {tidy(error_m)} m, {compared}")
+        errors_m = [error_of(row, bound_m) for row in _with_errors(curve.rows)]
+        if costs:
+            yield f"Your {curve.method}: {'; '.join(costs)}."
+        elif errors_m:
+            yield f"Your {curve.method}: {min(errors_m):.1e} m at best."
+
+
+def _compared(ratio: float, cheapest: Curve) -> str:
+    """Return how a cost compares with that of the cheapest method."""
+    if ratio == 1:
+        return "the cheapest"
+    if ratio < _ALIKE:
+        return f"as cheap as {cheapest.label}"
+    return f"{float(f'{ratio:.2g}'):.15g} times {cheapest.label}"
+
+
+def _with_errors(rows: Sequence[Row]) -> list[Row]:
+    """Return rows with a finite error over the whole span, also those without a cost."""
+    return [row for row in rows if row.measured and math.isfinite(error_of(row, 0.0))]
 
 
 def _times(ratio: float) -> str:

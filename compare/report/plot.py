@@ -142,12 +142,20 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
 
 
 def _error_lines(scores: Sequence[Score], lowest_m: float, scale: float) -> list[ChartLine]:
-    """Return the lines of the scores' errors, at least `lowest_m`, over times in another unit."""
+    """Return the lines of the scores' errors, at least `lowest_m`, over times in another unit.
+
+    A release that is right but for its rounding lies below the axis, and is left out.
+    """
+    smallest_m = _smallest_m(scores)
     # each line is thinner than those below it, so that two that coincide are both seen
     widths = np.linspace(min(_LINE_WIDTH * len(scores), _WIDEST), _LINE_WIDTH, len(scores))
     lines = []
     for i, score in enumerate(scores):
-        t, error = _thinned(score.errors.t, np.maximum(score.errors.position, lowest_m))
+        drawn = score.errors.position >= smallest_m
+        if not drawn.any():
+            drawn[:] = True
+        error_m = np.maximum(score.errors.position[drawn], lowest_m)
+        t, error = _thinned(score.errors.t[drawn], error_m)
         name = shortened(Path(score.candidate.name).name, _LONGEST_NAME)
         style = {**line_style(COLOURS[i % len(COLOURS)], i), "linewidth": widths[i]}
         lines.append(ChartLine(name, (t * scale).tolist(), error.tolist(), style))

@@ -54,7 +54,7 @@ _BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")
 _DARK_FROM = 3  # index of the first blue with white text
 _SQUARE = 0.27  # side of a square of the map in inches
 _MARGINS = (2.3, 1.9)  # width and height for the names, in inches
-_LONGEST_NAME = 30  # characters of a scene's name, which may be the path of a file
+LONGEST_NAME = 30  # characters of a scene's name, which may be the path of a file
 _CHARACTER = 0.27  # width of a character in squares
 _LEAST_COLUMNS = 15  # columns of squares that the key needs
 _KEY_ROWS = 5.5  # rows of squares that it needs
@@ -91,7 +91,7 @@ def heat_map(cells: Sequence[Cell]) -> str:
             ha="left",
             fontsize=8,
         )
-        names = [shortened(scene, _LONGEST_NAME) for scene in scenes]
+        names = [shortened(scene, LONGEST_NAME) for scene in scenes]
         axes.set_yticks([i + 0.5 for i in range(len(scenes))], names, fontsize=8)
         axes.tick_params(length=0, top=False, labeltop=True, labelbottom=False, bottom=False, pad=2)
         axes.spines[:].set_visible(False)

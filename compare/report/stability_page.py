@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -19,17 +21,23 @@ from reference.status import Status
 from ..studies.campaign import machine
 from ..studies.long_runs import LongRun, laws
 from ..studies.stability import WRONG, Cell
-from ..studies.users_program import NUMBER
+from ..studies.users_program import DIGITS, NUMBER
 from .folder import Report
 from .page import Html, PageTable, facts, figure, findings, page, paragraph, section
 from .pareto import tidy
-from .stability_charts import LETTERS, error_growth, heat_map
+from .stability_charts import LETTERS, LONGEST_NAME, error_growth, heat_map
 from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, words
 
 _COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)  # statuses with a count of their own
 _NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 _LEAD_OF_PROGRAMS = (
-    "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
+    f" A program of --run was asked for {DIGITS:g} digits: a millionth of the amplitude. Its CPU "
+    "seconds are those of the whole process."
+)
+_LOST = math.log10(WRONG)  # digits below those asked for with which a run still counts as ok
+_OK = (
+    f"its error is at most {WRONG} times what was asked for, which is {_LOST:g} digits fewer "
+    "(`foucault score` allows only a millionth of the amplitude)"
 )
 _PAIRS = (
     ("scipy_radau", "scipy_dop853"),
@@ -162,7 +170,7 @@ def page_text(document: dict[str, Any]) -> str:
         section("Digits kept", figure(heat_map(cells), _heat_map_caption())),
         *_failure_sections(cells),
         section("What each run was asked for, and what it kept", _runs(cells)),
-        section("What the words mean", words({cell.status for cell in cells})),
+        section("What the words mean", words({cell.status for cell in cells}, {Status.OK: _OK})),
         section("Scenes", _scenes(cells)),
         *_long_run_sections(_long_runs_of(document)),
     ]
@@ -171,7 +179,7 @@ def page_text(document: dict[str, Any]) -> str:
     parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
     lead = paragraph(
         "Each method was asked for the same number of digits on every scene, and its result was "
-        f"compared with the reference solution{_LEAD_OF_PROGRAMS if programs else ''}."
+        f"compared with the reference solution.{_LEAD_OF_PROGRAMS if programs else ''}"
     )
     return page("Stiff and extreme scenes: what breaks, and when", parts, lead=lead)
 
@@ -226,9 +234,8 @@ def _runs(cells: Sequence[Cell], reasons: bool = False) -> Html:
         columns["reason"] = "prose"
     rows = []
     for cell in cells:
-        kept = "" if cell.digits is None else f"{cell.digits:.1f}"
         run = (cell.scene, cell.method, cell.precision, setting(cell), cell.status.words)
-        measured = (f"{cell.asked:.1f}", kept, cpu(cell.cpu_s))
+        measured = (f"{cell.asked:.1f}", _kept(cell), cpu(cell.cpu_s))
         rows.append((*run, *measured, cell.reason) if reasons else (*run, *measured))
     return PageTable(columns, rows).html()
 
@@ -275,12 +282,35 @@ def text_table(document: dict[str, Any]) -> str:
     for text in headlines(cells):
         lines += as_lines(text, hanging="  ")
     lines += ["", *table.lines(keys=2), ""]
+    for name in document["programs"]:
+        lines += [*_program_lines(name, cells), ""]
+    if Status.OK in present:
+        lines += as_lines(f"ok: {_OK}.", hanging="  ")
     for text in advice(present):
         lines += as_lines(text, hanging="  ")
     for text in laws(runs):
         lines += ["", *as_lines(text, hanging="  ")]
     lines += ["", *as_lines(f"load: {busy(cells)}", hanging="  ")]
     return "\n".join(lines)
+
+
+def _program_lines(name: str, cells: Sequence[Cell]) -> list[str]:
+    """Return a line for each scene of a program: the digits that it kept, and how it failed, if it did."""
+    own = [cell for cell in cells if cell.method == name and cell.precision == NUMBER]
+    rows = []
+    for cell in own:
+        scene = shortened(Path(cell.scene).name, LONGEST_NAME)  # of a file without its folder
+        rows.append((scene, setting(cell), _kept(cell), cell.status.words))
+    columns = {name: "", "setting": "number", "digits kept": "number", "status": ""}
+    lines = PageTable(columns, rows).lines()
+    for cell in own:
+        if cell.reason:
+            lines += as_lines(f"{cell.scene}: {cell.reason}", "  ", hanging="  ")
+    return lines
+
+
+def _kept(cell: Cell) -> str:
+    return "" if cell.digits is None else f"{cell.digits:.1f}"
 
 
 def _settings(cells: Sequence[Cell]) -> str:

@@ -45,7 +45,10 @@ _COLUMNS = 3  # panels side by side
 _STRIP = 0.95  # lower edge of the strip of failed rows over the height of the panel
 _TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 50, 70, 100, 150, 200, 300, 500)
 _BLUE, _VERMILLION, _GREEN, _PURPLE, _ORANGE, _SKY, _INK = COLOURS
+_MAGENTA = "#e0007f"  # beside the palette, for the user's own
+_USERS_WIDTH = 2.4  # of a line of the user's own, in points
 FAMILY_COLOURS = {
+    Family.USERS: _MAGENTA,
     Family.PAPER: _INK,
     Family.GEOMETRIC: _PURPLE,
     Family.MANY_DIGITS: _SKY,
@@ -65,8 +68,8 @@ class Ladder(ChartLine):
 
 
 def family_of(method: str) -> Family:
-    """Return a method's family; a program of the user's belongs to the others."""
-    return METHODS[method].family if method in METHODS else Family.OTHERS
+    """Return a method's family; what is not among the methods is the user's program or file."""
+    return METHODS[method].family if method in METHODS else Family.USERS
 
 
 def ladders(
@@ -93,6 +96,8 @@ def ladders(
             continue
         family = family_of(curve.method)
         style = line_style(FAMILY_COLOURS[family], places[family])
+        if family == Family.USERS:
+            style["linewidth"] = _USERS_WIDTH
         across, up = zip(*drawable, strict=True)
         lines.append(Ladder(name(curve), across, up, style, 1.0, family))
         places[family] += 1

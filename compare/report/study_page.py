@@ -35,7 +35,7 @@ def page_text(document: dict[str, Any]) -> str:
         statuses = {row.status for row in rows if row.failed}
         parts.append(section("What failed, and why", failures, study_tables.words(statuses)))
     parts += [
-        section("How it was measured", *_how_measured(document["limit_s"])),
+        section("How it was measured", *_how_measured(document)),
         section("The methods", study_tables.methods(rows, bound_m, document["programs"])),
     ]
     title = document["title"] or document["scene"]
@@ -49,10 +49,13 @@ def _main_results(document: dict[str, Any]) -> Html:
     return findings(conclusions)
 
 
-def _how_measured(limit_s: float) -> list[Html]:
-    limit = f"{limit_s:g} CPU seconds"
+def _how_measured(document: dict[str, Any]) -> list[Html]:
+    limit = f"{document['limit_s']:g} CPU seconds"
     values = {"limit": limit, "repeat_s": REPEAT_S, "repeats": REPEATS}
-    return [paragraph(text.format(**values)) for text in _TEXTS["measured"]]
+    paragraphs = [paragraph(text.format(**values)) for text in _TEXTS["measured"]]
+    if document["programs"]:
+        paragraphs.append(paragraph(_TEXTS["program"]))
+    return paragraphs
 
 
 def _lead(document: dict[str, Any]) -> Html:

@@ -28,6 +28,10 @@ from .pareto import TARGETS_M, cost_at, costs_at, curves, front, rows_of, senten
 _FRONT_MARK = "●"
 _PART_MARK = "~"
 _ABSENT = "–"
+_OF_PROGRAMS = (
+    "Your program: CPU seconds of the whole process; transits are not measured, and h drift needs "
+    "its velocities"
+)
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is
 # lower
@@ -159,12 +163,17 @@ def failures(rows: Sequence[Row]) -> Html | None:
     return PageTable(columns, cells, ["failed"] * len(cells)).html(_CAPTIONS["failed"])
 
 
-def words(statuses: Collection[Status]) -> Html:
-    """Return the meaning of the words that stand for these statuses, and what to do about each."""
+def words(statuses: Collection[Status], meanings: Mapping[Status, str] | None = None) -> Html:
+    """Return the meaning of the words that stand for these statuses, and what to do about each.
+
+    `meanings` are those that a report defines more exactly.
+    """
     columns = {"word": "", "meaning": "prose", "what to do": "prose"}
-    rows = [
-        (status.words, status.meaning, status.advice) for status in Status if status in statuses
-    ]
+    exact = meanings or {}
+    rows = []
+    for status in Status:
+        if status in statuses:
+            rows.append((status.words, exact.get(status, status.meaning), status.advice))
     return PageTable(columns, rows).html()
 
 
@@ -243,6 +252,8 @@ def text_table(document: dict[str, Any]) -> str:
         "error (see --limit)"
     )
     lines += ["", *_measured_as_text(rows, bound_m), "", *as_lines(legend)]
+    if document["programs"]:
+        lines += as_lines(_OF_PROGRAMS)
     statuses = {row.status for row in rows if row.failed}
     if statuses:
         lines += ["", "Failed:", *_failed_as_text(rows), ""]

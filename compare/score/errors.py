@@ -41,6 +41,8 @@ _MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
 # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
 _TURNS = 4
 _EPSILON = 2.0**-52  # of a double: twice the largest rounding
+# of doubles, in a drift: 9 in a sum of squares, 10 in h, which is subtracted from another
+_ROUNDINGS = 10
 # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 _ENVELOPES = 40
 
@@ -268,7 +270,10 @@ def swing_rate(scene: Scene, speed_m_s: float) -> float:
 
 
 def drifts(candidate: Candidate, scene: Scene) -> dict[str, float]:
-    """Return the largest |h - h(first row)| (m²/s²; needs velocities and no drag) and the largest ||r| - l| (m)."""
+    """Return the largest |h - h(first row)| (m²/s²; needs velocities and no drag) and the largest ||r| - l| (m).
+
+    Columns are taken as doubles. A drift below the rounding of that computation counts as 0.
+    """
     columns = candidate.columns
     k = constants_in_double(scene.exact)
     if "z" not in columns:
@@ -277,12 +282,23 @@ def drifts(candidate: Candidate, scene: Scene) -> dict[str, float]:
     square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
     # |n| - 1 without cancellation
     stretch = (square - 1) / (np.sqrt(square) + 1)
-    largest = {"length_m": float(np.abs(stretch * k.length).max())}
+    reach = math.sqrt(float(square.max()))
+    largest = {"length_m": _resolved(stretch * k.length, reach * k.length)}
     if all(name in columns for name in VELOCITY) and not scene.exact.drag:
         v = tuple(columns[name] / k.length for name in VELOCITY)
         h = energy(n, v, k)
-        largest["h_m2_s2"] = float(np.abs(h - h[0]).max())
+        speed = math.sqrt(float((v[0] ** 2 + v[1] ** 2 + v[2] ** 2).max()))
+        pull = math.hypot(*k.pull)
+        # the terms of h at their largest
+        terms = (speed**2 + (float(k.rate) * reach) ** 2) / 2 + pull * reach
+        largest["h_m2_s2"] = _resolved(h - h[0], terms * k.length**2)
     return largest
+
+
+def _resolved(differences: Array, scale: float) -> float:
+    """Return the largest of differences of numbers of this scale, 0 if rounding alone may be as large."""
+    largest = float(np.abs(differences).max())
+    return largest if largest > _ROUNDINGS * _EPSILON * scale else 0.0
 
 
 def swing_errors(truth: Array, error: Array, rest: tuple[float, float]) -> SwingErrors:

@@ -10,10 +10,9 @@ from reference import Scene, UnreachableError
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.numbers.columns import POSITION
-from reference.numbers.precision import Array
+from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
 
 from ..candidates.candidate import Candidate, Deviation
-from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES
 from ..observed.swing_plane import rest_in_metres
 from .verdict import Score
@@ -67,7 +66,7 @@ def _scale_of_the_release(candidate: Candidate, scene: Scene) -> float | None:
 
     None if it is no multiple of it.
     """
-    x, y, _ = Start.of(scene.exact, PLACEHOLDER_BITS).position
+    x, y, _ = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS).position
     release = complex(float(x), float(y))
     if not release or candidate.t[0] != 0:
         return None
@@ -92,7 +91,7 @@ def warning_of_a_resting_bob(score: Score) -> tuple[str, ...]:
     """
     if not (score.agrees and score.candidate.positions and score.transits is None):
         return ()
-    start = Start.of(score.scene.exact, PLACEHOLDER_BITS)
+    start = Start.of(score.scene.exact, DOUBLE_BITS + GUARD_BITS)
     places = {"where it is released": np.array([float(q) for q in start.position])}
     with suppress(UnreachableError):
         places["at its rest position"] = rest_in_metres(score.scene)

@@ -42,7 +42,7 @@ class Score:
         errors: at the candidate's times.
         tolerance_m: largest position error allowed, in m.
         swing: turn of the swing plane and delay.
-        drifts: of h and of `|r| - l`, if the candidate has the columns.
+        drifts: of h and of `|r| - l`, if the candidate has the columns; 0 if rounding hides it.
         covers: share of the scene's span that was demanded, from 0 to 1.
         as_model: whether agreement as a named model is enough.
         notes: remarks that a reader ought to know.
@@ -251,7 +251,10 @@ def _lines_on_positions(score: Score) -> Iterator[str]:
     yield entry("scd, mescd at end", scores, scales)
 
     worst = score.worst
-    numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
+    if worst.expected == worst.got:
+        numbers = f"off by {abs(worst.difference):.2g} m"
+    else:
+        numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
     yield entry("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
     of_each = []
     for name, number in score.worst_of_each.items():
@@ -296,9 +299,9 @@ def _lines_on_the_swing(score: Score) -> Iterator[str]:
     if turn is not None and delay is not None:
         fit = f"{math.degrees(turn):.3g} degrees, {delay:.3g} s"
         yield entry("swing plane, phase", fit, "fitted")
-    if score.drifts:
-        words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
-        drifts = [words[name].format(value) for name, value in score.drifts.items()]
+    words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
+    drifts = [words[name].format(value) for name, value in score.drifts.items() if value]
+    if drifts:
         yield entry("drifts", ", ".join(drifts))
 
 

@@ -21,6 +21,7 @@ from reference.solver.sensitivity import Sensitivity, digits_lost
 from reference.status import Status
 
 from .row import Row
+from .users_program import NUMBER
 
 # rate times step up to which an explicit method of order 5 to 8 is stable, about
 _EXPLICIT_REACH = 3.3
@@ -158,6 +159,7 @@ def reason_of(
     if status in (Status.NOT_INSTALLED, Status.REFUSED):
         return row.reason
     causes = list(_causes(row, status, traits))
+    possible = list(_possible_causes(traits)) if row.formulation == NUMBER else []
     reported = (
         f" It reported: {row.reason.rstrip('.')}."
         if row.reason and status != Status.OUT_OF_TIME
@@ -169,7 +171,7 @@ def reason_of(
             if row.cpu_s
             else ""
         )
-        return _sentence([cost or row.reason, *causes])
+        return _sentence([cost or row.reason, *causes, *possible])
     if status == Status.ILL_CONDITIONED and digits is not None:
         magnified = f"the flow magnifies an error at the release {traits.magnified:.1g} times"
         return _sentence(
@@ -180,8 +182,9 @@ def reason_of(
         )
     if status == Status.SILENTLY_WRONG and digits is not None:
         head = f"success was reported with {digits:.1f} digits where {requested:.1f} were asked for"
-        return _sentence([head, *(causes or [_accumulated(row)])])
-    return _sentence(causes or ["no measured property of the scene explains it"]) + reported
+        return _sentence([head, *(causes or [_accumulated(row)]), *possible])
+    unexplained = "no measured property of the scene explains it"
+    return _sentence([*causes, *possible] or [unexplained]) + reported
 
 
 def _causes(row: Row, status: Status, traits: Character) -> Iterator[str]:
@@ -189,17 +192,58 @@ def _causes(row: Row, status: Status, traits: Character) -> Iterator[str]:
         steps = traits.damping * traits.span / _EXPLICIT_REACH
         text = f"stiff: rates up to {traits.damping:.2g}/s, a factor of {traits.ratio:.1g} apart"
         yield f"{text}, so that a method whose step is bound by the fastest rate needs about {steps:.1g} steps"
-    if row.formulation in ("angles", "lagrangian") and traits.nearest < 1e-3:
-        yield f"the path passes the vertical within {traits.nearest:.1g} of the length, where the azimuth jumps"
-    if row.formulation == "plane" and traits.amplitude > 0.99:
-        yield "the path reaches the height of the suspension, where x and y do not determine the state"
-    if row.formulation == "space" and traits.least_tension < 0:
-        yield f"the rod is pushed (least tension {traits.least_tension:.2g}/s²): |r| - l grows exponentially"
+    for difficulty in _difficulties(traits):
+        if row.formulation in difficulty.formulations:
+            yield difficulty.text
     if status != Status.OUT_OF_TIME and traits.magnified > 1e3:
         yield f"the flow amplifies an error at the release {traits.magnified:.1g} times"
     if status == Status.SILENTLY_WRONG and 0 < traits.amplitude < 1e-5 and row.kind != "precision":
         cancelled = f"cancellation against z ≈ −l costs {-math.log10(traits.amplitude):.0f} digits"
         yield f"the amplitude is {traits.amplitude:.1g} of the length: {cancelled}"
+
+
+@dataclass(frozen=True)
+class _Difficulty:
+    """A property of the motion that is hard for certain variables.
+
+    Attributes:
+        formulations: those with these variables.
+        variables: the variables in words.
+        text: the property, and what follows from it.
+    """
+
+    formulations: tuple[str, ...]
+    variables: str
+    text: str
+
+
+def _difficulties(traits: Character) -> Iterator[_Difficulty]:
+    """Yield what is hard for some variables on this trajectory."""
+    if traits.least_tension < 0:
+        tension_words = f"least tension {traits.least_tension:.2g}/s²"
+        yield _Difficulty(
+            ("space",),
+            "x, y, z and their rates",
+            f"the rod is pushed ({tension_words}): |r| - l grows exponentially",
+        )
+    if traits.amplitude > 0.99:
+        yield _Difficulty(
+            ("plane",),
+            "x and y alone",
+            "the path reaches the height of the suspension, where x and y do not determine the state",
+        )
+    if traits.nearest < 1e-3:
+        yield _Difficulty(
+            ("angles", "lagrangian"),
+            "angles of the cord",
+            f"the path passes the vertical within {traits.nearest:.1g} of the length, where the azimuth jumps",
+        )
+
+
+def _possible_causes(traits: Character) -> Iterator[str]:
+    """Yield what is hard for a program, whose variables are not known."""
+    for difficulty in _difficulties(traits):
+        yield f"if it integrates {difficulty.variables}: {difficulty.text}"
 
 
 def _accumulated(row: Row) -> str:
@@ -209,5 +253,5 @@ def _accumulated(row: Row) -> str:
 
 
 def _sentence(parts: list[str]) -> str:
-    text = "; ".join(part for part in parts if part)
+    text = "; ".join(part.rstrip(".") for part in parts if part)
     return text[:1].upper() + text[1:] + "." if text else ""

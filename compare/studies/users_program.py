@@ -19,7 +19,14 @@ from reference.plain_text import plain, shortened
 from reference.status import Status
 
 from ..candidates.candidate import Candidate, NotFiniteError
-from ..candidates.external import SETTING, CrashedError, OutOfTimeError, arguments, run_program
+from ..candidates.external import (
+    SETTING,
+    CrashedError,
+    OutOfTimeError,
+    arguments,
+    failure_of,
+    run_program,
+)
 from ..candidates.read import read, read_stream
 from ..methods import METHODS
 from ..methods.external import LONGEST_NAME
@@ -77,12 +84,16 @@ def measured(
     base = Row(program.name, NUMBER, step_s, "step", scene.inputs, Status.OK, load=load_per_core())
     try:
         words = arguments(program.command.replace(SETTING, repr(step_s)), scene)
-        output, cpu_s, _ = run_program(words, _PATIENCE * program.limit_s)
+        limit = f"{_PATIENCE} times --limit"
+        output, cpu_s, _ = run_program(words, _PATIENCE * program.limit_s, limit)
         with output:
             candidate = read_stream(output, "its output")
         return _against(base, candidate, cpu_s, scene, golden, wrong_m)
     except InputError as error:
-        reason = f"{error.field}: {error.got}" if isinstance(error, NotFiniteError) else str(error)
+        if isinstance(error, NotFiniteError):
+            reason = f"{error.field}: {error.got}"
+        else:
+            reason = failure_of(error)
         return replace(base, status=_STATUSES.get(type(error), Status.GAVE_UP), reason=reason), None
 
 

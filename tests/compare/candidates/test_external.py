@@ -11,6 +11,7 @@ import sys
 import time
 from pathlib import Path
 
+import mpmath
 import pytest
 from interruption import PATIENCE_S, gone_within, interrupted
 from places import ROOT
@@ -62,6 +63,14 @@ def test_what_a_scene_gives_in_angles_is_also_there_in_metres():
     assert float(known["x0"]) == 2.0
     assert float(known["vy0"]) == pytest.approx(3.141592653589793, rel=1e-15)
     assert float(known["z0"]) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_numbers_that_follow_from_a_scene_are_filled_in_for_a_program_with_more_digits(paris):
+    """A program in quadruple precision is judged by the decimal inputs, so they must not be doubles."""
+    with mpmath.workdps(60):
+        x0, y0 = mpmath.mpf("0.3"), mpmath.mpf("0.4")
+        z0 = -mpmath.sqrt(67**2 - x0**2 - y0**2)
+        assert abs(mpmath.mpf(placeholders(paris)["z0"]) - z0) < 1e-34 * 67
 
 
 def test_no_shell_is_between(paris):

@@ -165,3 +165,13 @@ def test_every_method_and_approximation_is_listed_with_what_it_lacks(foucault):
     for name, method in METHODS.items():
         assert f"  {name} " in out and method.title in unwrapped(out)
     assert "linear_3d" in out
+
+
+@pytest.mark.parametrize("words", [("score", "rows.csv"), ("study",), ("sweep", "--rows", "2")])
+def test_a_dataset_in_place_of_a_scene_is_told_from_other_folders_and_its_scene_named(
+    foucault, words
+):
+    command, *rest = words
+    status, _, err = foucault(command, "paris.binary64", *rest)
+    assert status == 2
+    assert "It is a dataset. Name its scene: paris --set inputs=binary64" in err

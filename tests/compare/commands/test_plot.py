@@ -145,6 +145,14 @@ def test_the_axis_of_errors_begins_at_the_smallest_after_the_release(score, tmp_
     assert ticks[0] == "10⁻⁷"
 
 
+def test_a_release_without_an_error_has_no_point_on_the_logarithmic_axis(score, tmp_path):
+    path = tmp_path / "error.svg"
+    compare.plot(score).save(path)
+    curve = rf'd="([^"]*)"[^>]*stroke: {COLOURS[0]}; stroke-width'
+    (points,) = re.findall(curve, path.read_text())
+    assert len(re.findall("[ML]", points)) == len(score.errors.t) - 1
+
+
 def test_two_lines_that_coincide_are_both_seen(score, tmp_path):
     path = tmp_path / "error.svg"
     path.write_bytes(error_picture([score, score], path))

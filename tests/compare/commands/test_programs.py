@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 import sys
 
@@ -92,3 +93,17 @@ def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path, monkey
     (line,) = (tmp_path / "out/rows.jsonl").read_text().removeprefix(stored).splitlines()
     # another command of that name is measured again, and nothing else
     assert json.loads(line)["item"][0] == "mine"
+
+
+def test_score_tells_the_step_that_it_chose_for_a_program(foucault, tmp_path):
+    program = tmp_path / "late.py"
+    program.write_text(
+        'import sys\nprint("t,x,y", "0,0.3,0.4", f"60,{sys.argv[1]},0", sep="\\n")\n'
+    )
+    command = f"{shlex.join([sys.executable, str(program)])} {{setting}}"
+    words = ("score", "paris", "--t-end", "60", "--repeats", "0", "--no-diagnosis", "--run")
+    status, _, err = foucault(*words, command)
+    step_s = float(re.search(r"\{setting\} is ([\d.]+) s", err)[1])
+    assert status == 1
+    assert 60 / step_s == pytest.approx(round(60 / step_s), rel=1e-5)
+    assert "{setting}" not in foucault(*words, command, "--setting", "0.1")[2]

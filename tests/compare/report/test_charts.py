@@ -322,7 +322,7 @@ def test_a_program_of_others_with_many_digits_is_named_too():
 def test_every_method_has_a_family_and_within_a_picture_no_two_look_alike():
     looks = [line.style for line in ladders(curves(ROWS), cost_of, cost_of)]
     assert len({(one["color"], one["marker"]) for one in looks}) == len(looks) > 20
-    assert family_of("my_own_program") == family_of("external: ./run") == Family.OTHERS
+    assert family_of("my_own_program") == family_of("external: ./run") == Family.USERS
     assert len(set(FAMILY_COLOURS.values())) == len(Family)
 
 

@@ -433,3 +433,20 @@ def test_a_run_over_a_part_of_the_span_has_no_error_and_is_no_failure():
     assert "What failed" not in page and "Failed:" not in text
     assert "~40.0" in page and "~40.0" in text
     assert "without its error (see --limit)" in unwrapped(text)
+
+
+def test_the_users_own_program_is_in_the_main_results_with_how_it_was_measured():
+    rows = [
+        row("rk4", 0.1, 1e-4, 0.1, kind="step"),
+        row("rk4", 0.01, 1e-8, 1.0, kind="step"),
+        row("gl4", 0.1, 1e-7, 0.39, kind="step"),
+        row("old.csv", 0.0, 2e-2, None, kind="file", formulation="file"),
+    ]
+    document = study_document(rows, programs={"gl4": "./gl4 {setting}"}, candidates=["old.csv"])
+    text = " ".join(text_table(document).split())
+    assert "Your gl4: 0.39 s at 1e-3 m, 3.9 times rk4;" in text
+    assert "Your old.csv: 2.0e-02 m at best." in text
+    page = study_page.page_text(document)
+    assert "Your gl4: 0.39 s at 1e-3 m" in page
+    assert "CPU time of its whole process" in page
+    assert "whole process" not in study_page.page_text(study_document())

@@ -155,6 +155,17 @@ def test_what_a_score_has_not_is_not_said(golden):
     assert (data["causes"], data["conventions"], "timing" in data) == ([], [], False)
 
 
+def test_what_rounding_makes_of_a_right_file_is_not_said(golden):
+    """Golden rows drift by the rounding of doubles alone, and two numbers that print alike show no error."""
+    rows = {name: golden[name][:11] for name in ("t", "x", "y", "z", "vx", "vy", "vz")}
+    lines = str(judge(rows, "paris")).splitlines()
+    assert not [line for line in lines if line.strip().startswith("drifts")]
+    assert "expected" not in line_of(lines, "worst    ")
+
+    stretched = rows | {"z": rows["z"] - 1e-9}
+    assert "|r| - l by 1e-09 m" in line_of(str(judge(stretched, "paris")).splitlines(), "drifts")
+
+
 def test_inputs_that_are_doubles_have_no_floor_to_compare_with(tmp_path, monkeypatch):
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0", "inverse_flattening": "inf"}

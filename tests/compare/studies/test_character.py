@@ -72,6 +72,19 @@ ROW = Row("rk4", "space", 0.1, "step", "binary64", Status.OK, steps=6000, h_drif
             CALM,
             ["no measured property of the scene explains it"],
         ),
+        (
+            # nobody knows what a program of --run integrates
+            Status.GAVE_UP,
+            replace(ROW, formulation="program", reason="It diverges."),
+            replace(CALM, least_tension=-4.1),
+            ["if it integrates x, y, z and their rates: the rod is pushed", "It reported: It dive"],
+        ),
+        (
+            Status.SILENTLY_WRONG,
+            replace(ROW, formulation="program"),
+            replace(CALM, amplitude=1.0),
+            ["local errors of 6000 steps add up", "if it integrates x and y alone: the path reach"],
+        ),
         (Status.REFUSED, replace(ROW, reason="not below"), CALM, ["not below"]),
     ],
 )

@@ -253,7 +253,9 @@ def test_somebody_elses_program_is_a_row_of_the_study(foucault, tmp_path: Path) 
     (row,) = (row for row in json.loads(out)["rows"] if row["method"] != "rk4")
     assert row["method"] == "still.py"
     assert row["error_m"] > 0.5
-    (line,) = (line for line in foucault(*words)[1].splitlines() if "still.py" in line)
+    text = foucault(*words)[1]
+    assert re.search(r"^Your still\.py: \S+ m at best\.$", text, re.M)
+    (line,) = (line for line in text.splitlines() if line.lstrip().startswith("still.py"))
     # it has no {setting}, and so no step
     assert line.split()[:3] == ["still.py", "–", f"{row['error_m']:.2e}"]
 
@@ -294,8 +296,8 @@ def test_somebodys_files_are_rows_of_the_study_with_the_time_that_is_stated(
     )
     status, text, _ = foucault(*words, *(word for file in files for word in ("--candidates", file)))
     assert status == 0
-    (good,) = (line for line in text.splitlines() if "good.csv" in line)
-    (still,) = (line for line in text.splitlines() if "still.csv" in line)
+    (good,) = (line for line in text.splitlines() if line.lstrip("* ").startswith("good.csv"))
+    (still,) = (line for line in text.splitlines() if line.lstrip("* ").startswith("still.csv"))
     assert re.search(r"good\.csv +– +1\.41e-09 +0\.250", good)
     assert re.search(r"still\.csv +– +\d\.\d\de-01$", still.rstrip())
     document = json.loads((out / "study.json").read_text())
