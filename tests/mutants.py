@@ -48,13 +48,14 @@ TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_nami
 PASSAGES = "tests/reference/engines/test_passages.py"
 ENCLOSURE = "tests/reference/enclosure/test_"
 FORMULAS = f"{ENCLOSURE}primitives.py {ENCLOSURE}identities.py {ENCLOSURE}formulas.py"
+RUNS = f"{ENCLOSURE}enclosed_runs.py {SOLVER}pushed_releases.py"
 # of that very module
 HOLDS = f"{ENCLOSURE}mutations.py::test_the_module_as_it_is_passes_every_check"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/enclosure/trusted: sections": f"{HOLDS}[sections]",
     "reference/enclosure/trusted: box": f"{HOLDS}[box]",
     "reference/enclosure/trusted: derivatives": f"{HOLDS}[derivatives] {ENCLOSURE}derivatives.py",
-    "reference/enclosure/trusted: balls system defect radius tube six_columns": FORMULAS,
+    "reference/enclosure/trusted: balls system defect radius tube six_columns": f"{FORMULAS} {RUNS}",
     "reference/enclosure/trusted: zeros": f"{ENCLOSURE}made_up.py {ENCLOSURE}enclosed_transits.py",
     "reference/enclosure/trusted: function": f"{ENCLOSURE}function.py",
     "reference/enclosure/trusted: printed": f"{ENCLOSURE}printed.py",
