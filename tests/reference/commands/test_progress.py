@@ -132,9 +132,9 @@ def test_a_line_comes_after_twenty_seconds_and_then_at_twice_the_time(clock, cap
     out, err = capsys.readouterr()
     assert out == ""
     assert err.splitlines() == [
-        "creeping: proving: about 9.7 minutes left, 4 % of 86,400 s after 21 s",
-        "creeping: proving: about 9.3 minutes left, 7 % of 86,400 s after 43 s",
-        "creeping: proving: about 8.6 minutes left, 14 % of 86,400 s after 87 s",
+        "creeping: proving: about 9.7 minutes left, 4 % of the simulated 86,400 s after 21 s",
+        "creeping: proving: about 9.3 minutes left, 7 % of the simulated 86,400 s after 43 s",
+        "creeping: proving: about 8.6 minutes left, 14 % of the simulated 86,400 s after 87 s",
     ]
 
 
