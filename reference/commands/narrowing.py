@@ -72,6 +72,10 @@ class _Proved(NamedTuple):
     holds_s: float
     half_width_s: float = math.inf
 
+    def is_within(self, wanted_s: float) -> bool:
+        """Return whether the passage has an interval, which is no wider than wanted."""
+        return math.isfinite(self.half_width_s) and self.half_width_s <= wanted_s
+
 
 class Narrowing:
     """Proofs of a scene with narrower inputs.
@@ -125,9 +129,7 @@ class Narrowing:
             found["narrowest_holds_s"] = last.holds_s
         return found
 
-    def for_a_passage(
-        self, passage: Mapping[str, Any], until_s: Fraction, holds_s: float
-    ) -> dict[str, Any]:
+    def for_a_passage(self, passage: Mapping[str, Any], until_s: Fraction) -> dict[str, Any]:
         """Return the width of a passage's interval in s with each single input known ten times better.
 
         If a width was asked for, or the passage is not proved, return what suffices for it as well.
@@ -135,7 +137,6 @@ class Narrowing:
         Args:
             passage: in the form of --json.
             until_s: by when it has come.
-            holds_s: up to which time the proof holds with the widths as they are.
         """
         word = passage["section"]
         number = passage["number"]
@@ -173,13 +174,7 @@ class Narrowing:
         found["enough"] = {}
         if not is_proved or half_width_s > wanted_s:
             found["enough"], _ = self._enough(
-                measured,
-                alone,
-                names[0],
-                lambda proved: (
-                    math.isfinite(proved.half_width_s) and proved.half_width_s <= wanted_s
-                ),
-                1.0 if is_proved else _least_factor(float(passage["estimate_s"]), holds_s),
+                measured, alone, names[0], lambda proved: proved.is_within(wanted_s)
             )
         return found
 

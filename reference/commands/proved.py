@@ -273,10 +273,14 @@ def _estimate_unproved(scene: Scene, asked: Sequence[Asked], document: dict[str,
 def _prove_alone(
     scene: Scene, widths: dict[str, str], document: dict[str, Any], begin: Show
 ) -> None:
-    """Add the intervals of passages that can be proved in runs which end just after them."""
+    """Prove passages again in runs that end just after them, which gives narrower intervals.
+
+    These are the passages that are not proved, or not to the width that was asked for.
+    """
     period = document["first_order"].get("period_s")
+    own_period = Ends(*map(Fraction, period)) if period else None
     for passage in document["passages"]:
-        if "estimate_s" not in passage:
+        if not _falls_short(passage):
             continue
         part = ending_after(scene, _latest_s(passage, period))
         word = passage["section"]
@@ -285,14 +289,28 @@ def _prove_alone(
         try:
             interval = interval_alone(part, widths, word, number, report)
         except BoxTooWideError as error:
-            passage["reason"] = f"the proof ends at {error.holds_s:.3g} s"
-            continue
-        if isinstance(interval, str):
+            interval = f"the proof ends at {error.holds_s:.3g} s"
+        if not isinstance(interval, str):
+            passage.pop("reason", None)
+            passage.update(_timed(_both(interval, passage.get("t_s")), own_period))
+        elif "reason" in passage:
             passage["reason"] = interval
-        else:
-            del passage["reason"]
-            own_period = Ends(*map(Fraction, period)) if period else None
-            passage.update(_timed(interval, own_period))
+
+
+def _falls_short(passage: dict[str, Any]) -> bool:
+    """Return whether a passage is in the run, but not proved, or not to the width that was asked for."""
+    if "t_s" not in passage:
+        return "estimate_s" in passage
+    low, high = map(Fraction, passage["t_s"])
+    return "wanted_s" in passage and high - low > 2 * Fraction(passage["wanted_s"])
+
+
+def _both(interval: Ends, other: Sequence[str] | None) -> Ends:
+    """Return what is in an interval, and in another one if there is one."""
+    if other is None:
+        return interval
+    low, high = map(Fraction, other)
+    return Ends(max(interval.low, low), min(interval.high, high))
 
 
 def _narrowing(
@@ -307,7 +325,6 @@ def _narrowing(
     goals = len(passages) + falls_short
     if not goals:
         return {}
-    holds_s = float(document["over_s"])
     narrowing = Narrowing(
         scene, widths, goals, begin(f"{scene.id}: narrower inputs", goals, "proofs")
     )
@@ -315,9 +332,9 @@ def _narrowing(
     for passage in passages:
         name = f"{passage['section']} {passage['number']}"
         until_s = _latest_s(passage, document["first_order"].get("period_s"))
-        found[name] = narrowing.for_a_passage(passage, until_s, holds_s)
+        found[name] = narrowing.for_a_passage(passage, until_s)
     if falls_short:
-        found["run"] = narrowing.for_the_run(holds_s)
+        found["run"] = narrowing.for_the_run(float(document["over_s"]))
     return found
 
 
