@@ -67,7 +67,8 @@ def _interval_lines(ranges: dict[str, Any]) -> Iterator[str]:
         yield from table(columns)
     missing = [*_missing_means(ranges), *_missing_passages(ranges)]
     if missing:
-        yield ""
+        if rows:
+            yield ""
         yield from facts(missing)
     if ranges.get("useless"):
         yield ""
@@ -85,7 +86,9 @@ def _missing_means(ranges: dict[str, Any]) -> Iterator[Fact]:
         yield "no estimate", ranges["no_estimate"]
     if "reason" in ranges:  # nothing is proved
         return
-    if not any(ranges[name] for name in ("period_s", "precession_deg_per_h", "full_turn_h")):
+    is_open = not any(ranges[name] for name in ("period_s", "precession_deg_per_h", "full_turn_h"))
+    # without an estimate there may be no period at all
+    if is_open and "no_estimate" not in ranges:
         yield "no period", _NO_PERIOD
     yield from left_out_facts(ranges["left_out"])
 
@@ -184,9 +187,9 @@ def _moved(limit: dict[str, Any]) -> str:
 
 def _derivative_lines(ranges: dict[str, Any]) -> Iterator[str]:
     """Yield the derivatives of period and precession, as intervals; nothing where none is proved."""
-    if "derivatives_over_s" not in ranges:
-        return
     limits = _by_share(ranges)
+    if not any(limit["s_per_unit"] or limit["deg_per_h_per_unit"] for limit in limits.values()):
+        return
     units = [unit_of(name).replace("degrees", "degree") or "1" for name in limits]
     periods = [" to ".join(limit["s_per_unit"] or ["–"]) for limit in limits.values()]
     turns = [" to ".join(limit["deg_per_h_per_unit"] or ["–"]) for limit in limits.values()]

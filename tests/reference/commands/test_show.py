@@ -321,6 +321,14 @@ def test_a_bob_that_creeps_is_said_to_and_its_drag_is_warned_of(foucault, museum
     assert "drag" not in err
 
 
+def test_the_ranges_of_a_bob_that_creeps_say_so_too(museum):
+    changes = ("--set", "pendulum.drag=20", "--set", "run.t_end=10")
+    ranges = shown(museum, *changes)["ranges"]
+    told = text_of(ranges)
+    assert "no estimate The bob creeps back to rest" in told
+    assert "no period" not in told and "Derivatives" not in told
+
+
 @pytest.mark.parametrize(
     ("azimuth", "bearing"),
     [
