@@ -13,6 +13,7 @@ from ..model.start import Start
 from ..scenes.inputs import azimuth_of
 from ..scenes.scene import Scene
 from ..scenes.shipped import scene_ids
+from ..solver.swing import creeps_in_words
 from .layout import paragraph
 
 _PREC = 64  # bits of the release
@@ -45,6 +46,11 @@ def cautions(scene: Scene, word: str, varied: tuple[str, ...] = ()) -> list[str]
         texts.append(
             'site.gravity_is is "ellipsoid": gravity alone, to which the centrifugal force is added. '
             'A gravimeter or a table of g gives "effective", which contains it.'
+        )
+    if is_own and scene.exact.creeps and "pendulum.drag" not in varied:
+        texts.append(
+            f"{creeps_in_words(scene)} pendulum.drag is a rate in 1/s: for a swing that halves in 20 min "
+            "write 2 ln 2/1200 = 0.0011552."
         )
     return texts
 

@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
+from ..engines.plan import Report
 from ..errors import BoxTooWideError
 from ..numbers.zeros import XDOT
 from ..scenes.scene import Scene
+from ..solver.swing import Ends
 from ..solver.uncertain import decimal, prove_ranges
+from .passages import passage_interval
 from .progress import Move
 
 _TENTH = 10
@@ -24,13 +27,54 @@ _AFTER = Fraction(101, 100)  # of a passage's time: where the proofs of this pas
 Widths = Mapping[str, str]
 
 
-def reach_s(scene: Scene, widths: Widths) -> float:
-    """Return the time in s up to which the states can be proved for these widths, at most the end of the run."""
+def reach_s(scene: Scene, widths: Widths, report: Report | None = None) -> float:
+    """Return the time in s up to which the states can be proved for these widths, at most the end of the run.
+
+    `report` is called with the simulated time reached, in s.
+    """
     try:
-        prove_ranges(scene, widths, derivatives=True, transits=False, sections=[])
+        prove_ranges(scene, widths, derivatives=True, transits=False, sections=[], report=report)
     except BoxTooWideError as error:
         return error.holds_s
     return float(scene.run.t_end)
+
+
+def ending_after(scene: Scene, time_s: Fraction) -> Scene:
+    """Return a scene whose run ends hardly later than a time."""
+    t_end = decimal(min(scene.exact.t_end, time_s * _AFTER))
+    return scene.with_values({"run.t_end": t_end, "run.grid_step": t_end})
+
+
+def interval_alone(
+    scene: Scene, widths: Widths, word: str, number: int, report: Report
+) -> Ends | str:
+    """Return the interval of the time of a passage, or why there is none; of all zeros only its section is sought.
+
+    Raises:
+        BoxTooWideError: the proof ends before the run.
+    """
+    is_transit = word == XDOT
+    sections = [] if is_transit else [word]
+    ranges = prove_ranges(
+        scene, widths, derivatives=True, transits=is_transit, sections=sections, report=report
+    )
+    return passage_interval(ranges, word, number)
+
+
+class _Proved(NamedTuple):
+    """What a proof with some widths achieves.
+
+    Attributes:
+        holds_s: up to which time it holds.
+        half_width_s: half of the width of the interval of a passage; infinite if there is none.
+    """
+
+    holds_s: float
+    half_width_s: float = math.inf
+
+    def is_within(self, wanted_s: float) -> bool:
+        """Return whether the passage has an interval, which is no wider than wanted."""
+        return math.isfinite(self.half_width_s) and self.half_width_s <= wanted_s
 
 
 class Narrowing:
@@ -39,113 +83,152 @@ class Narrowing:
     Args:
         scene: the scene.
         widths: half of the width of each uncertain input, as decimals.
-        report: called with the number of proofs that are done.
+        goals: how many questions will be asked.
+        report: called with the number of proofs that are done, and how many there are at most.
     """
 
-    def __init__(self, scene: Scene, widths: Widths, report: Move) -> None:
+    def __init__(self, scene: Scene, widths: Widths, goals: int, report: Move) -> None:
         self._scene = scene
         self._widths = widths
         self._report = report
         self._done = 0
+        # each goal takes one proof for each input, and then some until one suffices
+        self._most = goals * (len(widths) + len(_NARROWER))
 
     def for_the_run(self, holds_s: float) -> dict[str, Any]:
         """Return how far the proof reaches with each single input known ten times better, and which widths suffice.
+
+        `narrowest_holds_s` is how far it reaches with all widths divided by the largest factor that
+        is tried, if none suffices.
 
         Args:
             holds_s: up to which time it holds with the widths as they are.
         """
         t_end_s = float(self._scene.run.t_end)
 
-        def measured(widths: Widths) -> float:
-            return reach_s(self._scene, widths)
+        def measured(widths: Widths) -> _Proved:
+            return _Proved(reach_s(self._scene, widths, self._share_of(t_end_s)))
 
         alone = self._alone(measured)
-        best = max(alone, key=lambda name: alone[name])
-        # a proof holds no longer than in proportion
-        least = t_end_s / holds_s if holds_s > 0 else 1.0
-        return {
-            "alone": [
-                {"input": name, "width": self._text(name, _TENTH), "holds_s": alone[name]}
-                for name in sorted(alone, key=lambda name: -alone[name])
-            ],
-            "enough": self._enough(measured, best, lambda reached_s: reached_s >= t_end_s, least),
-        }
-
-    def for_a_passage(self, passage: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the width of a passage's interval in s with each single input known ten times better.
-
-        If a width was asked for, return what suffices for it as well.
-
-        Args:
-            passage: one with an interval, in the form of --json.
-        """
-        low, high = map(Fraction, passage["t_s"])
-        word = passage["section"]
-        number = passage["number"]
-        # the passage, and hardly more
-        t_end = min(self._scene.exact.t_end, high * _AFTER)
-        part = self._scene.with_values(
-            {"run.t_end": decimal(t_end), "run.grid_step": decimal(t_end)}
+        names = sorted(alone, key=lambda name: -alone[name].holds_s)
+        enough, last = self._enough(
+            measured,
+            alone,
+            names[0],
+            lambda proved: proved.holds_s >= t_end_s,
+            _least_factor(t_end_s, holds_s),
         )
-        sections = [] if word == XDOT else [word]
-
-        def measured(widths: Widths) -> float:
-            ranges = prove_ranges(
-                part, widths, derivatives=True, transits=word == XDOT, sections=sections
-            )
-            times = ranges.zeros[word].table.exact("t")
-            if number > len(times):
-                return math.inf
-            first, last = times[number - 1]
-            return float(last - first) / 2
-
-        alone = self._alone(measured)
         found: dict[str, Any] = {
-            "half_width_s": float(high - low) / 2,
             "alone": [
-                {"input": name, "width": self._text(name, _TENTH), "half_width_s": alone[name]}
-                for name in sorted(alone, key=lambda name: alone[name])
+                {"input": name, "width": self._text(name, _TENTH), "holds_s": alone[name].holds_s}
+                for name in names
             ],
+            "enough": enough,
         }
-        if "wanted_s" in passage:
-            wanted_s = float(passage["wanted_s"])
-            best = min(alone, key=lambda name: alone[name])
-            found["enough"] = {}
-            if found["half_width_s"] > wanted_s:
-                found["enough"] = self._enough(measured, best, lambda half_s: half_s <= wanted_s)
+        if enough is None:
+            found["narrowest_holds_s"] = last.holds_s
         return found
 
-    def _alone(self, measured: Callable[[Widths], float]) -> dict[str, float]:
-        """Return what is measured with each input alone ten times as well known."""
-        results = {}
-        for name in self._widths:
-            results[name] = measured(self._narrower([name], _TENTH))
-            self._done += 1
-            self._report(self._done)
-        return results
+    def for_a_passage(self, passage: Mapping[str, Any], until_s: Fraction) -> dict[str, Any]:
+        """Return the width of a passage's interval in s with each single input known ten times better.
+
+        If a width was asked for, or the passage is not proved, return what suffices for it as well.
+
+        Args:
+            passage: in the form of --json.
+            until_s: by when it has come.
+        """
+        word = passage["section"]
+        number = passage["number"]
+        part = ending_after(self._scene, until_s)
+        t_end_s = float(part.run.t_end)
+
+        def measured(widths: Widths) -> _Proved:
+            try:
+                interval = interval_alone(part, widths, word, number, self._share_of(t_end_s))
+            except BoxTooWideError as error:
+                return _Proved(error.holds_s)
+            if isinstance(interval, str):
+                return _Proved(t_end_s)
+            return _Proved(t_end_s, float(interval.high - interval.low) / 2)
+
+        alone = self._alone(measured)
+        names = sorted(alone, key=lambda name: (alone[name].half_width_s, -alone[name].holds_s))
+        half_width_s = _half_width_s(passage)
+        found: dict[str, Any] = {
+            "half_width_s": _or_none(half_width_s),
+            "alone": [
+                {
+                    "input": name,
+                    "width": self._text(name, _TENTH),
+                    "half_width_s": _or_none(alone[name].half_width_s),
+                    "holds_s": alone[name].holds_s,
+                }
+                for name in names
+            ],
+        }
+        is_proved = math.isfinite(half_width_s)
+        if is_proved and "wanted_s" not in passage:
+            return found
+        wanted_s = float(passage.get("wanted_s", "inf"))
+        found["enough"] = {}
+        if not is_proved or half_width_s > wanted_s:
+            found["enough"], _ = self._enough(
+                measured, alone, names[0], lambda proved: proved.is_within(wanted_s)
+            )
+        return found
+
+    def _share_of(self, t_end_s: float) -> Report:
+        """Return a callback that reports the simulated time of a proof as a part of one proof."""
+        return lambda t: self._report(self._done + t / t_end_s, self._most)
+
+    def _measured(self, measured: Callable[[Widths], _Proved], widths: Widths) -> _Proved:
+        """Return what is proved with some widths, and count the proof."""
+        proved = measured(widths)
+        self._done += 1
+        self._report(self._done, self._most)
+        return proved
+
+    def _alone(self, measured: Callable[[Widths], _Proved]) -> dict[str, _Proved]:
+        """Return what is proved with each input alone ten times as well known."""
+        return {
+            name: self._measured(measured, self._narrower([name], _TENTH)) for name in self._widths
+        }
 
     def _enough(
         self,
-        measured: Callable[[Widths], float],
+        measured: Callable[[Widths], _Proved],
+        alone: Mapping[str, _Proved],
         best: str,
-        suffices: Callable[[float], bool],
+        suffices: Callable[[_Proved], bool],
         least: float = 1.0,
-    ) -> dict[str, str] | None:
-        """Return the widths that suffice: of one input, or else of all of them; None if none does.
+    ) -> tuple[dict[str, str] | None, _Proved]:
+        """Return the widths that suffice, and what was proved last.
+
+        The widths are those of one input, or else of all of them; None if none suffices.
 
         Args:
-            measured: what is measured by a proof with some widths.
-            best: the input that helps most, ten times as well known.
+            measured: what is proved with some widths.
+            alone: what is proved with each input alone ten times as well known.
+            best: the input that helps most.
             suffices: whether that is good enough.
             least: factor below which no width helps.
         """
-        for names, most in (([best], _TENTH), (list(self._widths), _NARROWER[-1])):
-            for factor in _NARROWER:
-                if not least <= factor <= most:
-                    continue
-                if suffices(measured(self._narrower(names, factor))):
-                    return {name: self._text(name, factor) for name in names}
-        return None
+        one_suffices = suffices(alone[best])
+        names = [best] if one_suffices else list(self._widths)
+        narrowest = _TENTH if one_suffices else _NARROWER[-1]
+        proved = alone[best]
+        for factor in _NARROWER:
+            # the narrowest are tried in any case, to say how far they reach
+            if factor < min(least, narrowest):
+                continue
+            if not (one_suffices and factor == _TENTH):
+                proved = self._measured(measured, self._narrower(names, factor))
+            if suffices(proved):
+                return {name: self._text(name, factor) for name in names}, proved
+            if factor == narrowest:
+                break
+        return None, proved
 
     def _narrower(self, names: list[str], factor: int) -> dict[str, str]:
         """Return the widths, some of them divided by a factor."""
@@ -157,3 +240,21 @@ class Narrowing:
     def _text(self, name: str, factor: int) -> str:
         """Return the width of an input divided by a factor, with its sign."""
         return f"±{decimal(Fraction(self._widths[name]) / factor)}"
+
+
+def _least_factor(needed_s: float, holds_s: float) -> float:
+    """Return a factor below which no narrower inputs help: a proof holds no longer than in proportion."""
+    return needed_s / holds_s if holds_s > 0 else 1.0
+
+
+def _half_width_s(passage: Mapping[str, Any]) -> float:
+    """Return half of the width of a passage's interval in s; infinite if it has none."""
+    if "t_s" not in passage:
+        return math.inf
+    low, high = map(Fraction, passage["t_s"])
+    return float(high - low) / 2
+
+
+def _or_none(half_width_s: float) -> float | None:
+    """Return a half-width, or None for an infinite one, which JSON does not have."""
+    return half_width_s if math.isfinite(half_width_s) else None

@@ -16,6 +16,8 @@ from ..numbers.precision import digits_that_hold
 from ..numbers.zeros import XDOT
 from ..scenes.scene import Scene, checked_value
 from ..scenes.texts import without_sign
+from ..solver.ranges import Ranges
+from ..solver.swing import Ends
 from .layout import Fact
 
 _FIRST = 3  # passages that are printed if no numbers are asked for
@@ -65,6 +67,19 @@ def _asked(word: str) -> Asked:
 def section_words(scene: Scene) -> tuple[str, ...]:
     """Return the sections whose passages are printed: the scene's, or else its transits."""
     return scene.run.sections or (XDOT,)
+
+
+def passage_interval(ranges: Ranges, word: str, number: int) -> Ends | str:
+    """Return the interval of the time of a passage, or why there is none."""
+    zeros = ranges.zeros.get(word)
+    if zeros is None:
+        return "the bob stays in the section"
+    times = zeros.table.exact("t")
+    if any(low < time[0] for low, _, _ in zeros.possible for time in times[number - 1 : number]):
+        return "an earlier one is not decided, so that its number is open"
+    if number > len(times):
+        return f"only {len(times)} are proved in {float(ranges.scene.run.t_end):.4g} s"
+    return Ends(*times[number - 1])
 
 
 def passage_name(word: str, number: int) -> str:

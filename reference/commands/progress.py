@@ -117,7 +117,7 @@ class Work:
         """How much is done: a percentage of the simulated time, or a number of a total."""
         if self.unit == "s":
             percent = 100 * min(self.completed / self.total, 1.0) if self.total else 0.0
-            return f"{percent:.0f} % of {_rough(self.total)} s"
+            return f"{percent:.0f} % of the simulated {_rough(self.total)} s"
         done = min(self.completed, self.total)
         return f"{_rough(done)} of {_rough(self.total)} {self.unit}"
 

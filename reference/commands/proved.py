@@ -11,18 +11,23 @@ from fractions import Fraction
 from typing import Any
 
 from ..dataset.ranges import ends
-from ..engines.registry import in_background
+from ..engines.registry import in_background, reports
 from ..errors import BoxTooWideError, UnreachableError
-from ..numbers.precision import rounded_up
-from ..numbers.zeros import Zeros
 from ..scenes.scene import Scene
-from ..solver.ranges import Derivative, Intervals, Ranges
+from ..solver.ranges import Intervals, Ranges
 from ..solver.solve import solve
 from ..solver.swing import HOUR, Ends, Swing, left_out
 from ..solver.uncertain import exact_texts, prove_ranges, widths_of
 from ..system.workers import Emit
-from .narrowing import Narrowing, reach_s
-from .passages import Asked, section_words
+from .effects import effects_document
+from .narrowing import Narrowing, ending_after, interval_alone, reach_s
+from .passages import (
+    Asked,
+    computed_passages,
+    passage_interval,
+    passage_name,
+    section_words,
+)
 from .progress import Move, Show
 
 _FIRST = 3  # transits, and passages of each section, that are printed for uncertain inputs
@@ -36,6 +41,8 @@ _SWING = {
 _MEAN = ("period_s", "precession_deg_per_h", "full_turn_h")  # of uncertain inputs
 # powers of ten by which the widths are smaller for the derivatives
 _CLOSER = 6
+_TOO_UNCERTAIN = "these inputs are too uncertain for a proof"
+_NO_SLOPES = {"s_per_unit": None, "deg_per_h_per_unit": None}
 _TRIES = 5  # ends of a run that are tried where the inputs are too uncertain for the whole
 
 
@@ -78,8 +85,8 @@ def proved_ranges(
     """Return what is proved for uncertain inputs, over as much of the run as the proof reaches.
 
     These are intervals of period, precession, full turn, first transits and passages, and the
-    passages that were asked for. If the inputs are too uncertain for the whole run, or for a
-    passage, `narrowing` tells which to know better.
+    passages that were asked for; beside them estimates over the whole run. If the inputs are too
+    uncertain for the whole run, or for a passage, `narrowing` tells which to know better.
 
     Args:
         scene: the scene.
@@ -92,18 +99,40 @@ def proved_ranges(
     """
     texts = exact_texts(widths_of(scene, widths))
     whole = _without_grid(scene)
-    # in a process of its own: it takes as long as the intervals do
-    with in_background(True, _send_near, whole, texts) as near:
-        # a look at the states alone costs little
-        holds_s = reach_s(whole, texts)
-        report = begin(f"{scene.id}: proving", holds_s)
-        ranges = _as_far_as_it_goes(whole, texts, holds_s, report)
-        document = _ranges_document(whole, texts, ranges, asked)
-        document |= near.result()
+    t_end_s = float(whole.run.t_end)
+    # a look at the states alone costs little
+    holds_s = reach_s(whole, texts, begin(f"{scene.id}: how far a proof reaches", t_end_s))
+    ranges = None
+    slopes: dict[str, Any] = {}
+    if holds_s > 0:
+        ranges, slopes = _ranges_and_slopes(whole, texts, holds_s, begin)
+
+    estimates = effects_document(whole, texts)
+    for name in texts:
+        estimates["limits"][name] |= slopes.get(name, _NO_SLOPES)
+    document = _ranges_document(whole, texts, ranges, asked) | estimates
+    if slopes:
+        document["derivatives_over_s"] = _provable(whole, holds_s).run.t_end
+    _estimate_unproved(whole, asked, document)
+    _prove_alone(whole, texts, document, begin)
     narrowing = _narrowing(whole, texts, document, begin)
     if narrowing:
         document["narrowing"] = narrowing
     return document
+
+
+def _ranges_and_slopes(
+    scene: Scene, widths: dict[str, str], holds_s: float, begin: Show
+) -> tuple[Ranges | None, dict[str, Any]]:
+    """Return the proof, and the derivatives over as much of the run as it was expected to hold for."""
+    part = _provable(scene, holds_s)
+    end_s = float(part.run.t_end)
+    # in a process of its own: it takes as long as the intervals do
+    with in_background(True, _send_near, part, widths) as near:
+        report = begin(f"{scene.id}: proving", end_s)
+        ranges = _as_far_as_it_goes(scene, widths, holds_s, report)
+        slopes = near.result(begin(f"{scene.id}: derivatives", end_s))
+    return ranges, slopes
 
 
 def _without_grid(scene: Scene) -> Scene:
@@ -114,6 +143,13 @@ def _without_grid(scene: Scene) -> Scene:
 def _ending_at(scene: Scene, t_end: str) -> Scene:
     """Return a scene whose run ends earlier."""
     return _without_grid(scene.with_values({"run.t_end": t_end}))
+
+
+def _provable(scene: Scene, holds_s: float) -> Scene:
+    """Return a scene whose run ends where a proof of it ends."""
+    if holds_s < float(scene.run.t_end):
+        return _ending_at(scene, _rounded_down(holds_s))
+    return scene
 
 
 def _as_far_as_it_goes(
@@ -131,9 +167,7 @@ def _as_far_as_it_goes(
     for _ in range(_TRIES):
         if holds_s <= 0:
             return None
-        part = scene
-        if holds_s < float(scene.run.t_end):
-            part = _ending_at(scene, _rounded_down(holds_s))
+        part = _provable(scene, holds_s)
         try:
             return prove_ranges(part, widths, derivatives=True, sections=sections, report=report)
         except BoxTooWideError as error:
@@ -158,7 +192,12 @@ def _ranges_document(
         "uncertain": {name: f"±{width}" for name, width in widths.items()},
     }
     if ranges is None:
-        return document | {"reason": "these inputs are too uncertain for a proof"}
+        passages = [
+            _numbered(word, one) | {"reason": "nothing is proved"}
+            for word in section_words(scene)
+            for one in asked
+        ]
+        return document | {"reason": _TOO_UNCERTAIN, "passages": passages}
     swing = ranges.swing
     words = scene.run.sections or ()
     return document | {
@@ -187,103 +226,153 @@ def _first_times(table: Intervals) -> list[list[str]]:
     return [list(ends(*t)) for t in table.exact("t")[:_FIRST]]
 
 
-def _passage(ranges: Ranges, word: str, asked: Asked) -> dict[str, Any]:
-    """Return the interval of a passage in the form of --json, or why there is none."""
+def _numbered(word: str, asked: Asked) -> dict[str, Any]:
+    """Return a passage in the form of --json, without a time."""
     passage: dict[str, Any] = {"section": word, "number": asked.number}
     if asked.width_s is not None:
         passage["wanted_s"] = str(float(asked.width_s))
-    interval = passage_interval(ranges, word, asked.number)
-    if isinstance(interval, str):
-        return passage | {"reason": interval}
-    passage["t_s"] = list(ends(*interval))
-    # wider than half a swing, it may hold other passages as well
-    period = ranges.period
-    passage["useless"] = period is not None and interval.high - interval.low > period.low / 2
     return passage
 
 
-def passage_interval(ranges: Ranges, word: str, number: int) -> Ends | str:
-    """Return the interval of the time of a passage, or why there is none."""
-    zeros: Zeros[Intervals] | None = ranges.zeros.get(word)
-    if zeros is None:
-        return "the bob stays in the section"
-    times = zeros.table.exact("t")
-    if any(low < time[0] for low, _, _ in zeros.possible for time in times[number - 1 : number]):
-        return "an earlier one is not decided, so that its number is open"
-    if number > len(times):
-        return f"only {len(times)} are proved in {ranges.scene.run.t_end} s"
-    return Ends(*times[number - 1])
+def _passage(ranges: Ranges, word: str, asked: Asked) -> dict[str, Any]:
+    """Return the interval of a passage in the form of --json, or why there is none."""
+    passage = _numbered(word, asked)
+    interval = passage_interval(ranges, word, asked.number)
+    if isinstance(interval, str):
+        return passage | {"reason": interval}
+    return passage | _timed(interval, ranges.period)
+
+
+def _timed(interval: Ends, period: Ends | None) -> dict[str, Any]:
+    """Return the time of a passage in the form of --json."""
+    # wider than half a swing, it may hold other passages as well
+    useless = period is not None and interval.high - interval.low > period.low / 2
+    return {"t_s": list(ends(*interval)), "useless": useless}
+
+
+def _estimate_unproved(scene: Scene, asked: Sequence[Asked], document: dict[str, Any]) -> None:
+    """Add the estimated times of the passages that are not proved, those of the scene's own inputs."""
+    unproved = [passage for passage in document["passages"] if "t_s" not in passage]
+    if not unproved:
+        return
+    period = document["first_order"].get("period_s")
+    longest_s = float(period[1]) if period else None
+    computed = {}
+    for passage in computed_passages(scene, asked, longest_s):
+        if "number" in passage:
+            computed[passage["section"], passage["number"]] = passage
+    for passage in unproved:
+        own = computed.get((passage["section"], passage["number"]), {})
+        if "t_s" in own:
+            passage["estimate_s"] = own["t_s"]
+            passage["estimate_error_s"] = own["t_error_s"]
+        elif "reason" in own:
+            passage["reason"] = f"none: {own['reason']}"
+
+
+def _prove_alone(
+    scene: Scene, widths: dict[str, str], document: dict[str, Any], begin: Show
+) -> None:
+    """Prove passages again in runs that end just after them, which gives narrower intervals.
+
+    These are the passages that are not proved, or not to the width that was asked for.
+    """
+    period = document["first_order"].get("period_s")
+    own_period = Ends(*map(Fraction, period)) if period else None
+    for passage in document["passages"]:
+        if not _falls_short(passage):
+            continue
+        part = ending_after(scene, _latest_s(passage, period))
+        word = passage["section"]
+        number = passage["number"]
+        report = begin(f"{scene.id}: {passage_name(word, number)}", float(part.run.t_end))
+        try:
+            interval = interval_alone(part, widths, word, number, report)
+        except BoxTooWideError as error:
+            interval = f"the proof ends at {error.holds_s:.3g} s"
+        if not isinstance(interval, str):
+            passage.pop("reason", None)
+            passage.update(_timed(_both(interval, passage.get("t_s")), own_period))
+        elif "reason" in passage:
+            passage["reason"] = interval
+
+
+def _falls_short(passage: dict[str, Any]) -> bool:
+    """Return whether a passage is in the run, but not proved, or not to the width that was asked for."""
+    if "t_s" not in passage:
+        return "estimate_s" in passage
+    low, high = map(Fraction, passage["t_s"])
+    return "wanted_s" in passage and high - low > 2 * Fraction(passage["wanted_s"])
+
+
+def _both(interval: Ends, other: Sequence[str] | None) -> Ends:
+    """Return what is in an interval, and in another one if there is one."""
+    if other is None:
+        return interval
+    low, high = map(Fraction, other)
+    return Ends(max(interval.low, low), min(interval.high, high))
 
 
 def _narrowing(
     scene: Scene, widths: dict[str, str], document: dict[str, Any], begin: Show
 ) -> dict[str, Any]:
-    """Return which inputs to know better: for the passages asked for, and for the whole run."""
-    passages = [passage for passage in document.get("passages", ()) if "t_s" in passage]
-    falls_short = document["over_s"] != scene.run.t_end
+    """Return which inputs to know better: for the passages asked for, or else for the whole run."""
+    passages = [
+        passage for passage in document["passages"] if "t_s" in passage or "estimate_s" in passage
+    ]
+    # who asks for passages needs no proof beyond them
+    falls_short = document["over_s"] != scene.run.t_end and not document["passages"]
     goals = len(passages) + falls_short
     if not goals:
         return {}
-    least_proofs = goals * len(widths)
     narrowing = Narrowing(
-        scene, widths, begin(f"{scene.id}: narrower inputs", least_proofs, "proofs")
+        scene, widths, goals, begin(f"{scene.id}: narrower inputs", goals, "proofs")
     )
     found = {}
     for passage in passages:
         name = f"{passage['section']} {passage['number']}"
-        found[name] = narrowing.for_a_passage(passage)
+        until_s = _latest_s(passage, document["first_order"].get("period_s"))
+        found[name] = narrowing.for_a_passage(passage, until_s)
     if falls_short:
         found["run"] = narrowing.for_the_run(float(document["over_s"]))
     return found
 
 
-def _send_near(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
-    """Send what the derivatives close to the scene's own inputs tell, to first order.
+def _latest_s(passage: dict[str, Any], period_s: Sequence[str] | None) -> Fraction:
+    """Return the time by which a passage has come; an estimate where it is not proved.
 
-    `limits`: how far each input moves the period, and the derivatives of period and precession with
-    respect to it, as intervals. `first_order`: period and precession for these widths.
+    Args:
+        passage: in the form of --json.
+        period_s: the range of the period, to first order.
+    """
+    if "t_s" in passage:
+        return Fraction(passage["t_s"][1])
+    own_s = Fraction(passage["estimate_s"])
+    if period_s is None:
+        return own_s
+    shortest_s, longest_s = map(Fraction, period_s)
+    # one swing more, as the release is uncertain too
+    return own_s * longest_s / shortest_s + longest_s
+
+
+def _send_near(emit: Emit, scene: Scene, uncertain: dict[str, str]) -> None:
+    """Send the derivatives of period and precession with respect to each input, as intervals.
+
+    They are proved close to the scene's own inputs. None is sent if that cannot be proved.
     """
     closer = {name: f"±{width}e-{_CLOSER}" for name, width in uncertain.items()}
     try:
-        near = prove_ranges(scene, closer, derivatives=True, sections="highest")
+        near = prove_ranges(
+            scene, closer, derivatives=True, sections="highest", report=reports(emit)
+        )
     except UnreachableError:
-        emit({"limits": {}, "first_order": {}})
+        emit({})
         return
-    limits = {}
-    for name, (move_s, share) in near.shares().items():
+    slopes = {}
+    for name in uncertain:
         derivative = near.derivative(name)
-        period = derivative.period or (move_s, move_s)
-        limits[name] = {
-            "moves_period_s": rounded_up(move_s * 10**_CLOSER),
-            "share": share,
-            "s_per_unit": list(ends(*period)),
+        slopes[name] = {
+            "s_per_unit": _texts(derivative.period),
             "deg_per_h_per_unit": _texts(derivative.precession),
         }
-    derivatives = {name: near.derivative(name) for name in uncertain}
-    emit({"limits": limits, "first_order": _first_order(near, derivatives, uncertain)})
-
-
-def _first_order(
-    near: Ranges, derivatives: dict[str, Derivative], widths: dict[str, str]
-) -> dict[str, list[str]]:
-    """Return period and precession for these widths by the derivatives close to the scene's inputs.
-
-    They are estimates: the proof `near` holds for far smaller widths.
-    """
-    values = {"period_s": near.period}
-    slopes = {"period_s": [derivatives[name].period for name in widths]}
-    swing = near.swing
-    if swing is not None:
-        values["precession_deg_per_h"] = swing.precession
-        slopes["precession_deg_per_h"] = [derivatives[name].precession for name in widths]
-    estimates = {}
-    for name, value in values.items():
-        if value is None or None in slopes[name]:
-            continue
-        far = sum(
-            Fraction(width) * max(abs(slope.low), abs(slope.high))
-            for slope, width in zip(slopes[name], widths.values(), strict=True)
-            if slope is not None
-        )
-        estimates[name] = list(ends(value.low - far, value.high + far))
-    return estimates
+    emit(slopes)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
+from math import log
 
 from ..scenes.scene import Scene, unit_of
 from .layout import Fact
+from .progress import duration_in_words
 
 _READINGS = {
     "decimal": "decimal: each number is exact as written",
@@ -15,6 +18,25 @@ _GRAVITY = {
     "ellipsoid": "gravity alone (ellipsoid): the centrifugal force is added",
     "effective": "as measured along the plumb line (effective)",
 }
+# of a compass, clockwise from north
+_DIRECTIONS = (
+    "north",
+    "north-north-east",
+    "north-east",
+    "east-north-east",
+    "east",
+    "east-south-east",
+    "south-east",
+    "south-south-east",
+    "south",
+    "south-south-west",
+    "south-west",
+    "west-south-west",
+    "west",
+    "west-north-west",
+    "north-west",
+    "north-north-west",
+)
 
 
 def title_of(scene: Scene) -> str:
@@ -60,8 +82,19 @@ def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
 
 
 def _cord(scene: Scene) -> str:
-    drag = f"drag {scene.pendulum.drag} 1/s" if scene.exact.drag else "no drag"
-    return f"{scene.pendulum.length} m, {drag}"
+    return f"{scene.pendulum.length} m, {_drag(scene)}"
+
+
+def _drag(scene: Scene) -> str:
+    """Return the drag, and how soon the swing halves; a bob that creeps does not swing."""
+    drag = scene.exact.drag
+    if not drag:
+        return "no drag"
+    text = f"drag {scene.pendulum.drag} 1/s"
+    if scene.exact.creeps or not scene.exact.gravity:
+        return text
+    halves_s = 2 * log(2) / float(drag)
+    return f"{text} (the swing halves in {duration_in_words(halves_s)})"
 
 
 def _site(scene: Scene) -> str:
@@ -87,7 +120,8 @@ def _release(scene: Scene) -> str:
         place = f"{east}, {north} of the suspension"
         rates = {"m/s east": release.vx, "m/s north": release.vy}
     else:
-        place = f"{release.angle}° from straight down, azimuth {release.azimuth}°"
+        azimuth = f"azimuth {release.azimuth}° ({_bearing(scene)})"
+        place = f"{release.angle}° from straight down, {azimuth}"
         rates = {
             "°/s of the angle": release.angle_rate,
             "°/s of the azimuth": release.azimuth_rate,
@@ -96,6 +130,13 @@ def _release(scene: Scene) -> str:
     if not moving:
         return f"{place}, at rest"
     return f"{place}, moving at {' and '.join(moving)}"
+
+
+def _bearing(scene: Scene) -> str:
+    """Return the compass bearing of the azimuth of the release, and the nearest of 16 directions."""
+    bearing = (90 - scene.exact.by_name["release.azimuth"]) % 360
+    direction = _DIRECTIONS[round(bearing / Fraction(45, 2)) % len(_DIRECTIONS)]
+    return f"bearing {float(bearing):g}°, {direction}"
 
 
 def _run(scene: Scene) -> str:

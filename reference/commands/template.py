@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..scenes.fields import SceneTable
-from ..scenes.scene import Scene, parse_scene
+from ..scenes.scene import Scene, parse_scene, unit_of
 
 _BEGIN = """\
 # A scene of the Foucault pendulum. docs/scene.md explains each field, drag and the azimuth with an example.
@@ -20,6 +20,7 @@ _TEMPLATE = {
     "site": {"gravity_is": "effective"},
     "release": {"angle": "5", "azimuth": "0"},
 }
+_WIDTHS = {"pendulum.length": "0.001", "site.gravity": "0.0001", "release.angle": "0.1"}
 
 
 def scene_file(scene: Scene | None) -> str:
@@ -34,11 +35,18 @@ def scene_file(scene: Scene | None) -> str:
         table = getattr(scene, name)
         if isinstance(table, SceneTable):
             lines += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
-    if scene.uncertain:
-        meaning = Scene.model_fields["uncertain"].description
-        lines += ["", f"[uncertain]  # {meaning}"]
-        lines += [f"{_toml(name)} = {_toml(width)}" for name, width in scene.uncertain.items()]
+    lines += _uncertain_lines(scene)
     return "\n".join(lines) + "\n"
+
+
+def _uncertain_lines(scene: Scene) -> Iterator[str]:
+    """Yield the table of the widths of a scene; an example in comments if there are none."""
+    comment = "" if scene.uncertain else "# "
+    yield ""
+    yield f"{comment}[uncertain]  # {Scene.model_fields['uncertain'].description}"
+    for name, width in (scene.uncertain or _WIDTHS).items():
+        assignment = f"{comment}{_toml(name)} = {_toml(width)}"
+        yield f"{assignment:{_COLUMN}}  # {unit_of(name)}".rstrip(" #")
 
 
 def _lines(table: SceneTable) -> Iterator[str]:

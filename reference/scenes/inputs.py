@@ -16,6 +16,13 @@ RELEASES = {
     "position": ("x", "y", "vx", "vy"),
     "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate"),
 }
+# inputs on which the motion depends, and which may be uncertain
+UNCERTAIN = [
+    "pendulum.length",
+    "pendulum.drag",
+    *(f"site.{name}" for name in (*SITE, "inverse_flattening")),
+]
+UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
 
 
 @dataclass(frozen=True)
@@ -65,6 +72,11 @@ class Inputs:
         kind = "angles" if self.position is None else "position"
         release = zip(RELEASES[kind], getattr(self, kind), strict=True)
         return values | {f"release.{name}": value for name, value in release}
+
+    @property
+    def creeps(self) -> bool:
+        """True if drag is at least 2 sqrt(g/l): the bob falls back to rest without swinging."""
+        return self.drag**2 * self.length >= 4 * self.gravity > 0
 
     @property
     def released(self) -> dict[str, Fraction]:

@@ -21,9 +21,9 @@ from pydantic import TypeAdapter, ValidationError
 from ..errors import NOTHING, Described, InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
-from .inputs import RELEASES, SITE, Inputs, as_read
+from .inputs import RELEASES, SITE, UNCERTAIN, Inputs, as_read
 from .shipped import data_root, scene_ids
-from .texts import Line, Widths, checked, explained
+from .texts import Line, Widths, by_full_name, checked, explained
 
 MAX_ROWS = 2_000_000
 _LEAST_T_END = Fraction(1, 10**300)
@@ -216,7 +216,8 @@ def checked_value(name: str, value: str, reading: Reading) -> str:
     try:
         _check_of(name).validate_python(value, context={"inputs": reading})
     except ValidationError as error:
-        wrong = explained(error, ())[0]
+        # the error names no field, because only one was checked
+        wrong = explained(error, {"": unit_of(name)})[0]
         raise InputError(name, value, wrong.expected, wrong.advice) from None
     return value
 
@@ -249,13 +250,27 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
         raise InputError(
             "scene", document, "nested mappings: {'id': 'mine', 'release': {'x': '1', 'y': '0'}}"
         )
+    unknown_inputs = [*_unknown_inputs(document.get("uncertain"))]
     try:
         scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
     except ValidationError as error:
-        raise all_of(explained(error, [*Scene.model_fields, *field_names()])) from None
+        units = {name: unit_of(name) for name in (*Scene.model_fields, *field_names())}
+        raise all_of([*explained(error, units), *unknown_inputs]) from None
+    if unknown_inputs:
+        raise all_of(unknown_inputs)
     if wrong := [*_wrong_in_release(scene, scene.exact), *_wrong_in_run(scene, scene.exact)]:
         raise all_of(wrong)
     return scene
+
+
+def _unknown_inputs(widths: object) -> Iterator[InputError]:
+    """Yield what is wrong with the names under [uncertain]."""
+    named = by_full_name(widths)
+    for word in named if isinstance(named, Mapping) else ():
+        if full_name(str(word)) not in UNCERTAIN:
+            expected = "an input on which the motion depends"
+            there_are = f"Inputs are {', '.join(UNCERTAIN)}."
+            yield unknown(f"uncertain.{word}", word, expected, UNCERTAIN, there_are)
 
 
 def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:

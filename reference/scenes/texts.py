@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Integral
@@ -36,12 +36,39 @@ _DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?0*(\d+))?", re.ASCII)
 class Refused(ValueError):
     """Raised by a validator with its expectation and advice.
 
-    It becomes an `InputError` with the field's name.
+    It becomes an `InputError` with the field's name. With `has_unit` the text is a number with
+    something behind it: the advice is then that of the field's unit, `number_alone`.
     """
 
-    def __init__(self, expected: str, advice: str = "") -> None:
+    def __init__(self, expected: str, advice: str = "", *, has_unit: bool = False) -> None:
         super().__init__(expected)
-        self.expected, self.advice = expected, advice
+        self.expected = expected
+        self.advice = advice
+        self.has_unit = has_unit
+
+    def advice_in(self, unit: str) -> str:
+        """Return the advice for a field of this unit."""
+        return number_alone(unit) if self.has_unit else self.advice
+
+
+# a number in the unit of a field, and what it stands for
+_NUMBERS_ALONE = {
+    "m": "0.005 for 5 mm",
+    "s": "1200 for 20 min",
+    "1/s": "2 ln 2/1200 = 0.0011552 for a swing that halves in 20 min",
+    "degrees": "51.5 for 51° 30′; south is negative",
+    "degrees/s": "0.5 for 30 degrees a minute",
+    "m/s": "0.01 for 1 cm/s",
+    "m/s²": "9.81 for 981 Gal",
+    "rad/s": "7.292e-5 for a turn in 86164 s",
+}
+
+
+def number_alone(unit: str) -> str:
+    """Return the advice for a number that has its unit behind it; "" is the unit of a pure number."""
+    if unit not in _NUMBERS_ALONE:
+        return "Write the number alone."
+    return f"Write the number alone, in {unit}: {_NUMBERS_ALONE[unit]}."
 
 
 def _reading(info: ValidationInfo) -> str:
@@ -63,7 +90,10 @@ def _as_text(value: object) -> object:
 def _decimal(text: str, info: ValidationInfo) -> str:
     match = _DECIMAL.fullmatch(text) if len(text) <= _MAX_LENGTH else None
     if match is None:
-        raise Refused("a decimal number such as 67 or 7.292115e-5", _how_to_write(text))
+        expected = "a decimal number such as 67 or 7.292115e-5"
+        advice = _how_to_write(text)
+        has_unit = not advice and _DECIMAL.match(text) is not None
+        raise Refused(expected, advice, has_unit=has_unit)
     # zero as well: 0e999999999 is computed with a power of ten
     if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > _MAX_EXPONENT:
         raise Refused(
@@ -91,11 +121,7 @@ def _how_to_write(text: str) -> str:
             if "," in text
             else f"Write at most {_MAX_LENGTH} characters."
         )
-    return (
-        "Write the number alone, in SI units or degrees: 1200 for 20 min."
-        if _DECIMAL.match(text)
-        else ""
-    )
+    return ""
 
 
 _DOUBLES = "The numbers are read as binary64 here."
@@ -140,7 +166,7 @@ Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
 
 
-def _by_full_name(widths: object) -> object:
+def by_full_name(widths: object) -> object:
     """Return widths by names such as pendulum.length, which without quotes is a table in a table for TOML."""
     if not isinstance(widths, Mapping):
         return widths
@@ -167,29 +193,30 @@ _Width = Annotated[
     AfterValidator(lambda width: f"±{width}"),
     WithJsonSchema({**_SCHEMA, "pattern": rf"^(±|\+-|\+/-)?{_DECIMAL.pattern}$"}),
 ]
-Widths = Annotated[dict[str, _Width], BeforeValidator(_by_full_name)]
+Widths = Annotated[dict[str, _Width], BeforeValidator(by_full_name)]
 
 
 _TEXTS = ("id", "title", "source", "flags")
 
 
-def explained(error: ValidationError, known: Iterable[str]) -> list[InputError]:
+def explained(error: ValidationError, known: Mapping[str, str]) -> list[InputError]:
     """Return the errors that a user reads: each wrong field, what it got, what was expected.
 
     Args:
         error: as pydantic raised it.
-        known: names of the fields that there are.
+        known: the full names of the fields that there are, with their units.
     """
     return [_explained(details, known) for details in error.errors()]
 
 
-def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
+def _explained(details: ErrorDetails, known: Mapping[str, str]) -> InputError:
     field = ".".join(str(part)[:_LONGEST_KEY] for part in details["loc"])
     kind, got = details["type"], details["input"]
     cause = details.get("ctx", {}).get("error")
     if isinstance(cause, Refused):
         got = ", ".join(map(str, got)) if isinstance(got, tuple) else got
-        return InputError(field, got, cause.expected, cause.advice)
+        advice = cause.advice_in(_unit(field, known))
+        return InputError(field, got, cause.expected, advice)
     if kind == "extra_forbidden":
         advice = did_you_mean(field, known, "`foucault show SCENE` lists them.")
         return InputError(field, got, "a field that scenes have", advice)
@@ -207,3 +234,12 @@ def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
         "dict": f"a table, written [{field}]",
     }.get(kind.partition("_")[0], details["msg"])
     return InputError(field, got, expected)
+
+
+def _unit(field: str, units: Mapping[str, str]) -> str:
+    """Return the unit of a field; that of a width, whose input may have a short name, is its input's."""
+    name = field.removeprefix("uncertain.")
+    for full, unit in units.items():
+        if name in (full, full.rpartition(".")[2]):
+            return unit
+    return ""

@@ -247,7 +247,7 @@ class Ranges(WithZeros[Intervals]):
         )
 
     def shares(self) -> dict[str, tuple[Fraction, float]]:
-        """Return how far each input alone may move the period, in s, and its share of all."""
+        """Return a bound on how far each input alone moves the period, in s, and its share of these bounds."""
         moved = {}
         for name, width in self.uncertain.items():
             slope = self.derivative(name).period

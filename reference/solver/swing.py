@@ -17,6 +17,7 @@ from ..errors import UnreachableError
 from ..model.start import Start
 from ..numbers.precision import GUARD_BITS, to_fraction, to_mpf
 from ..scenes.inputs import Inputs
+from ..scenes.scene import Scene
 
 # of a right angle: how near to it the turn from one highest point to the next may come
 _CERTAIN = 1e-6
@@ -174,6 +175,16 @@ def _rate(turn: Ends, spans_s: tuple[Fraction, Fraction]) -> Ends:
 def _longest_gap(points: Sequence[_Point]) -> Fraction:
     """Return the longest time between neighbours that their intervals allow, in s."""
     return max(later[0][1] - earlier[0][0] for earlier, later in pairwise(points))
+
+
+def creeps_in_words(scene: Scene) -> str:
+    """Return why a bob whose drag is too large for a swing has no period; see `Inputs.creeps`."""
+    inputs = scene.exact
+    most = 2 * math.sqrt(inputs.gravity / inputs.length)
+    return (
+        f"The bob creeps back to rest without swinging: drag {scene.pendulum.drag} 1/s is at least "
+        f"2 sqrt(g/l) = {most:.3g} 1/s."
+    )
 
 
 def left_out(reason: str, still: bool) -> dict[str, str]:

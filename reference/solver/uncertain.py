@@ -14,8 +14,8 @@ from ..errors import NOTHING, Described, InputError, unknown
 from ..numbers.columns import STATE
 from ..numbers.precision import fixed_decimal
 from ..numbers.taylor_step import TaylorStep
-from ..scenes.inputs import RELEASES, SITE, Inputs
-from ..scenes.scene import AnyScene, Scene, checked_value, full_name
+from ..scenes.inputs import UNCERTAIN, Inputs
+from ..scenes.scene import AnyScene, Scene, checked_value, full_name, unit_of
 from ..scenes.texts import without_sign
 from ..system.imports import needed
 from .pilot import check_reach
@@ -24,13 +24,7 @@ from .ranges import Intervals, Ranges
 from .request import RangesRequest, RunSettings, progress_report
 from .solution import exact_decimals, separated
 
-UNCERTAIN = [
-    "pendulum.length",
-    "pendulum.drag",
-    *(f"site.{name}" for name in (*SITE, "inverse_flattening")),
-]
-UNCERTAIN += [f"release.{name}" for names in RELEASES.values() for name in names]
-_EXAMPLE = "half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001"
+_EXAMPLE = "such as ±0.001, +-0.001 or 0.001"
 _MOST_DECIMALS = 20  # of an end of an interval
 
 
@@ -57,7 +51,7 @@ def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]
         _check_input(scene, name, field, word, text)
         if name in widths:
             raise InputError(field, text, f"one width of {name}", "Give one width for each input.")
-        widths[name] = _width(field, text)
+        widths[name] = _width(name, field, text)
     _check_ends(scene, widths)
     if scene.exact.position:
         _check_release(scene, widths)
@@ -75,13 +69,14 @@ def _check_input(scene: Scene, name: str, field: str, word: Any, text: Any) -> N
         raise InputError(field, text, "an input that this scene has", advice)
 
 
-def _width(field: str, text: Any) -> Fraction:
-    """Return half of a width, as a word such as ±0.001 gives it."""
+def _width(name: str, field: str, text: Any) -> Fraction:
+    """Return half of the width of an input, as a word such as ±0.001 gives it."""
     try:
         # any field that takes a decimal of either sign checks its form
         width = Fraction(checked_value("site.altitude", without_sign(str(text)), "decimal"))
     except InputError:
-        raise InputError(field, text, _EXAMPLE) from None
+        in_unit = f" in {unit_of(name)}" if unit_of(name) else ""
+        raise InputError(field, text, f"half of a width{in_unit}, {_EXAMPLE}") from None
     if width <= 0:
         raise InputError(field, text, "a width above 0", "Leave out inputs that are exact.")
     return width

@@ -8,7 +8,17 @@ from dataclasses import dataclass
 from ..errors import UnreachableError
 from ..model.start import Start
 from ..scenes.scene import AnyScene, Scene, as_scene
-from ..solver.swing import FAST, HOUR, LEAN, NO_SWING, ONE_SIDE, SMALL, offset, turns_too_far
+from ..solver.swing import (
+    FAST,
+    HOUR,
+    LEAN,
+    NO_SWING,
+    ONE_SIDE,
+    SMALL,
+    creeps_in_words,
+    offset,
+    turns_too_far,
+)
 from .part import highest_on_one_side, solve_part
 from .request import Settings, request
 
@@ -73,6 +83,8 @@ def swing(scene: AnyScene) -> EstimatedSwing:
     row = {name: values[0] for name, values in columns.items()}
     hz = float(row["swing_hz"])
     if not hz > 0:
+        if scene.exact.creeps:
+            raise UnreachableError(creeps_in_words(scene))
         raise UnreachableError(row["reason"] or NO_SWING)
 
     span_s = float(scene.run.t_end)

@@ -25,6 +25,11 @@ _QUOTED = 200  # characters of the parser's message that are quoted
 _WORD = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')"""
 _DEEP_KEY = re.compile(rf"(?<![\w\\-]){_WORD}(?:[ \t]*\.[ \t]*{_WORD}){{{MAX_DEPTH}}}", re.ASCII)
 
+_LINE_NUMBER = re.compile(r"at line (\d+)")  # in a message of the parser
+_ASSIGNED = rf"{_WORD}(?:\.{_WORD})*\s*=\s*"
+_TYPOGRAPHIC = re.compile(rf"{_ASSIGNED}[“”„‟‘’‚«»]")
+_UNQUOTED = re.compile(rf"{_ASSIGNED}[^\s\"'\[{{]")
+
 
 def open_at_once(path: Path) -> BinaryIO:
     """Open a file for reading; a pipe is opened at once, whether or not anybody writes to it.
@@ -52,6 +57,7 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
             TOML.
     """
     data = _read(path, field, MAX_BYTES, "a TOML file")
+    text = ""
     try:
         text = data.decode("utf-8-sig")  # some editors write a byte order mark
         if _DEEP_KEY.search(text):
@@ -60,7 +66,29 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
             )
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(field, str(path), "a TOML file", _reason(error)) from None
+        reason = f"{_reason(error)} {_wrong_line(str(error), text)}".rstrip()
+        raise InputError(field, str(path), "a TOML file", reason) from None
+
+
+def _wrong_line(message: str, text: str) -> str:
+    """Return the line of a TOML file that the parser's message is about, and advice on it; "" if it names none."""
+    found = _LINE_NUMBER.search(message)
+    lines = text.split("\n")
+    if found is None or int(found[1]) > len(lines):
+        return ""
+    line = lines[int(found[1]) - 1].strip()[:_QUOTED]
+    return f"Line {found[1]}: `{line}`. {_how_to_correct(line)}".rstrip()
+
+
+def _how_to_correct(line: str) -> str:
+    """Return advice on a line that is no TOML; "" if there is none."""
+    if _TYPOGRAPHIC.match(line):
+        return 'Write straight quotation marks: "5".'
+    if line.count('"') % 2:
+        return "A quotation mark is missing."
+    if _UNQUOTED.match(line):
+        return "Put the value in quotes."
+    return ""
 
 
 def texts_of(module: str) -> dict[str, Any]:

@@ -417,7 +417,7 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
             output += piece
     os.close(master)
     assert process.returncode == 0
-    assert b"% of 1,200 s" in output
+    assert b"% of the simulated 1,200 s" in output
 
 
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):

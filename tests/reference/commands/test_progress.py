@@ -8,6 +8,8 @@ import time
 
 import pytest
 
+import reference
+from reference.commands.narrowing import Narrowing
 from reference.commands.progress import Work, duration_in_words, progress
 from reference.system.channel import ACTIVITY
 
@@ -132,9 +134,9 @@ def test_a_line_comes_after_twenty_seconds_and_then_at_twice_the_time(clock, cap
     out, err = capsys.readouterr()
     assert out == ""
     assert err.splitlines() == [
-        "creeping: proving: about 9.7 minutes left, 4 % of 86,400 s after 21 s",
-        "creeping: proving: about 9.3 minutes left, 7 % of 86,400 s after 43 s",
-        "creeping: proving: about 8.6 minutes left, 14 % of 86,400 s after 87 s",
+        "creeping: proving: about 9.7 minutes left, 4 % of the simulated 86,400 s after 21 s",
+        "creeping: proving: about 9.3 minutes left, 7 % of the simulated 86,400 s after 43 s",
+        "creeping: proving: about 8.6 minutes left, 14 % of the simulated 86,400 s after 87 s",
     ]
 
 
@@ -192,3 +194,14 @@ def test_short_work_gets_no_line(clock, capsys):
 )
 def test_a_rough_time_has_two_digits_and_the_unit_that_suits_it(seconds, words):
     assert duration_in_words(seconds) == words
+
+
+def test_the_search_for_narrower_inputs_moves_on_within_a_proof_and_ends_by_its_total():
+    scene = reference.load_scene("two_radians", ["run.t_end=2", "run.grid_step=2"])
+    reports = []
+    narrowing = Narrowing(
+        scene, {"release.angle": "2"}, 1, lambda done, total: reports.append((done, total))
+    )
+    narrowing.for_the_run(0.0)
+    assert any(completed % 1 for completed, _ in reports)
+    assert all(completed <= total for completed, total in reports)

@@ -6,8 +6,13 @@ import json
 
 import lines
 import pytest
+from sampled import one_in
+from typer.testing import CliRunner
 
 import reference
+from foucault import commands
+from reference.commands.proved_text import ranges_lines, ranges_title
+from reference.commands.scene_text import input_facts
 from reference.scenes.shipped import scene_ids
 
 WIDEST = 80
@@ -34,31 +39,73 @@ sections = ["gate 135"]
 """
 
 
-@pytest.fixture
-def museum(tmp_path):
-    path = tmp_path / "mine.toml"
+@pytest.fixture(scope="module")
+def museum(tmp_path_factory):
+    path = tmp_path_factory.mktemp("museum") / "mine.toml"
     path.write_text(MUSEUM)
     return path
 
 
-def shown(foucault, *words):
+def shown(*words):
     """Return the JSON document of `show`."""
-    status, out, err = foucault("show", *words, "--json")
-    assert status == 0, err
-    return json.loads(out)
+    result = CliRunner().invoke(commands(), ["show", *map(str, words), "--json"])
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
 
 
-@pytest.mark.parametrize("columns", ["80", "200", "60"])
+def text_of(ranges):
+    """Return what people read of the ranges of a JSON document."""
+    return lines.unwrapped("\n".join(ranges_lines(ranges)))
+
+
+@pytest.fixture(scope="module")
+def too_long(museum):
+    """The document of a run for which the inputs are too uncertain."""
+    return shown(museum, "--set", "run.t_end=120")
+
+
+@pytest.fixture(scope="module")
+def long_enough(museum, too_long):
+    """The document of the same run, its inputs as uncertain as was said to suffice."""
+    enough = too_long["ranges"]["narrowing"]["run"]["enough"]
+    return shown(museum, "--set", "run.t_end=120", *_typed(enough))
+
+
+@pytest.fixture(scope="module")
+def with_passages(museum):
+    """The document of a short run with a passage that is not proved, and one that is."""
+    words = ("--passage", "12=±0.1", "--passage", "3=±1")
+    return shown(museum, "--set", "run.t_end=50", *words)
+
+
+def _typed(widths):
+    return [word for pair in widths.items() for word in ("--uncertain", "=".join(pair))]
+
+
+@pytest.mark.parametrize("columns", ["200", "80", "60"])
 def test_no_line_is_wider_than_the_terminal_or_80_characters(foucault, monkeypatch, columns):
     monkeypatch.setenv("COLUMNS", columns)
-    most = min(WIDEST, int(columns))
-    outputs = [foucault("scenes")[1]]
-    names = scene_ids() if columns == "80" else ["paris", "museum_gate", "creeping"]
-    for name in names:
-        status, out, _ = foucault("show", name, "--set", "run.t_end=10", "--uncertain", "none")
-        assert status == 0
-        outputs.append(out)
-    assert [line for out in outputs for line in out.splitlines() if len(line) > most] == []
+    out = foucault("scenes")[1]
+    for name in ("paris", "museum_gate", "creeping"):
+        out += _short(foucault, name)
+    assert _too_wide(out, min(WIDEST, int(columns))) == []
+
+
+@pytest.mark.parametrize("name", one_in(3, scene_ids()))
+def test_no_line_of_a_scene_is_wider_than_80_characters(foucault, monkeypatch, name):
+    monkeypatch.setenv("COLUMNS", str(WIDEST))
+    assert _too_wide(_short(foucault, name), WIDEST) == []
+
+
+def _short(foucault, name):
+    """Return what is shown of a scene over ten seconds."""
+    status, out, _ = foucault("show", name, "--set", "run.t_end=10", "--uncertain", "none")
+    assert status == 0
+    return out
+
+
+def _too_wide(text, most):
+    return [line for line in text.splitlines() if len(line) > most]
 
 
 def test_a_terminal_has_titles_in_bold_type_unless_no_color_is_set():
@@ -77,9 +124,9 @@ def test_scenes_wraps_each_title_beside_its_id_and_says_where_flags_are(foucault
     assert "`foucault show SCENE`" in flat
 
 
-def test_show_gives_any_passage_of_an_exact_scene(foucault):
+def test_show_gives_any_passage_of_an_exact_scene():
     words = ("paris", "--set", "run.t_end=600", "--section", "gate 30", "--section", "turn 0")
-    passages = shown(foucault, *words, "--passage", "50", "--passage", "2")["passages"]
+    passages = shown(*words, "--passage", "50", "--passage", "2")["passages"]
     solved = reference.solve("paris", t_end=600, digits=20, sections=["gate 30", "turn 0"])
     assert [(one["section"], one["number"]) for one in passages] == [
         ("gate 30", 50),
@@ -91,16 +138,16 @@ def test_show_gives_any_passage_of_an_exact_scene(foucault):
         truth = solved.sections[one["section"]].table.exact("t")[one["number"] - 1]
         assert abs(one["t_s"] - truth) <= one["t_error_s"] < 1e-9
     # a section alone: its first ones; numbers alone: transits
-    first = shown(foucault, *words[:5])["passages"]
+    first = shown(*words[:5])["passages"]
     assert [one["number"] for one in first] == [1, 2, 3]
-    (transit,) = shown(foucault, *words[:3], "--passage", "3")["passages"]
+    (transit,) = shown(*words[:3], "--passage", "3")["passages"]
     assert transit["t_s"] == pytest.approx(float(solved.transits.exact("t")[2]), abs=1e-9)
-    (none,) = shown(foucault, *words[:3], "--passage", "80")["passages"]
+    (none,) = shown(*words[:3], "--passage", "80")["passages"]
     assert none["reason"] == "the run has 73"
 
 
-def test_without_a_passage_asked_for_none_is_computed(foucault):
-    assert "passages" not in shown(foucault, "paris", "--set", "run.t_end=600")
+def test_without_a_passage_asked_for_none_is_computed():
+    assert "passages" not in shown("paris", "--set", "run.t_end=600")
 
 
 @pytest.mark.parametrize("word", ["0", "-1", "many", "3=", "3=±0", "3=wide", "1.5"])
@@ -115,12 +162,10 @@ def test_a_wanted_width_needs_uncertain_inputs(foucault):
     assert (status, out) == (2, "") and "--uncertain" in err
 
 
-def test_ranges_hold_as_far_as_they_go_and_say_which_input_to_narrow(foucault, museum):
-    document = shown(foucault, museum, "--set", "run.t_end=300")
-    ranges = document["ranges"]
-    assert document["motion"]["over_s"] == ranges["asked_s"] == "300"
-    reached_s = float(ranges["over_s"])
-    assert 10 < reached_s < 300
+def test_ranges_hold_as_far_as_they_go(museum, too_long):
+    ranges = too_long["ranges"]
+    assert too_long["motion"]["over_s"] == ranges["asked_s"] == "120"
+    assert 10 < float(ranges["over_s"]) < 120
     # what is proved is proved: pendulums at the corners of the box are inside
     low, high = map(float, ranges["first_transits_s"][2])
     for angle, length in (("4.5", "12.295"), ("5.5", "12.305")):
@@ -130,24 +175,33 @@ def test_ranges_hold_as_far_as_they_go_and_say_which_input_to_narrow(foucault, m
         third = reference.solve(corner, level="computed", digits=10).transits.exact("t")[2]
         assert low <= third <= high
 
-    narrowing = ranges["narrowing"]["run"]
-    best = narrowing["alone"][0]
-    assert best["input"] == "release.angle" and best["holds_s"] > 1.5 * reached_s
+
+def test_ranges_that_end_early_say_which_input_to_narrow(too_long, long_enough):
+    ranges = too_long["ranges"]
+    best = ranges["narrowing"]["run"]["alone"][0]
+    assert best["input"] == "release.angle"
+    assert best["holds_s"] > 1.2 * float(ranges["over_s"])
     # what is said to suffice does
-    words = [
-        word for pair in narrowing["enough"].items() for word in ("--uncertain", "=".join(pair))
-    ]
-    enough = shown(foucault, museum, "--set", "run.t_end=300", *words)["ranges"]
-    assert enough["over_s"] == "300" and "narrowing" not in enough
+    assert long_enough["ranges"]["over_s"] == "120"
+    assert "narrowing" not in long_enough["ranges"]
 
 
-def test_people_are_told_how_far_the_ranges_go(foucault, museum):
-    status, out, _ = foucault("show", museum, "--set", "run.t_end=300")
-    assert status == 0
-    assert "period" in lines.part(out, "Motion over 300 s")
-    told = lines.part(out, "Ranges, proved to ")
-    assert "too uncertain for a proof over all 300 s" in told
-    assert "To prove all 300 s, narrow " in told
+def test_people_are_told_how_far_the_ranges_go_and_which_run_is_proved(too_long):
+    ranges = too_long["ranges"]
+    assert ranges_title(ranges).startswith(f"Ranges, proved to {ranges['over_s']} s only")
+    told = text_of(ranges)
+    assert "too uncertain for a proof over all 120 s" in told
+    assert "To prove all 120 s, narrow release.angle to " in told
+    assert f"With the widths as they are, choose run.t_end = {ranges['over_s']}." in told
+
+
+def test_derivatives_are_those_of_the_part_that_is_proved(too_long):
+    """Over a run that ends before them they would be lost."""
+    ranges = too_long["ranges"]
+    assert ranges["derivatives_over_s"] == ranges["over_s"]
+    for limit in ranges["limits"].values():
+        low, high = map(float, limit["s_per_unit"])
+        assert low < high < low + 1e-6
 
 
 def test_inputs_too_uncertain_for_any_proof_leave_scene_and_motion(foucault):
@@ -155,46 +209,62 @@ def test_inputs_too_uncertain_for_any_proof_leave_scene_and_motion(foucault):
     changes += ("release.angle=120", "release.azimuth=0", "site.rotation_rate=0")
     words = ("two_radians", *(word for change in changes for word in ("--set", change)))
     words += ("--uncertain", "angle=±2")
-    ranges = shown(foucault, *words)["ranges"]
+    ranges = shown(*words)["ranges"]
     assert ranges["over_s"] == "0" and "period_s" not in ranges
     status, out, _ = foucault("show", *words)
     assert status == 0
     assert "period" in lines.part(out, "Motion")
-    assert "shorter (run.t_end)" in lines.part(out, "Ranges: nothing is proved")
+    told = lines.part(out, "Ranges: nothing is proved")
+    assert "Even with all widths divided by 100 the proof ends at " in told
+    assert "run.t_end" not in told  # no run would do
 
 
-def test_for_the_wanted_width_of_a_passage_it_says_which_input_to_narrow(foucault, museum):
-    wanted_s = 0.05
-    asked = ("--uncertain", "angle=±0.05", "--passage", f"20=±{wanted_s}", "--passage", "3=±1")
-    ranges = shown(foucault, museum, *asked)["ranges"]
-    passage, _ = ranges["passages"]
-    low, high = map(float, passage["t_s"])
-    assert high - low > 2 * wanted_s
-    narrowing = ranges["narrowing"]["gate 135 20"]
+def test_a_passage_that_is_not_proved_has_an_estimate_and_the_input_to_narrow(
+    museum, with_passages
+):
+    ranges = with_passages["ranges"]
+    passage, near = ranges["passages"]
+    own = shown(museum, "--uncertain", "none", "--passage", "12")["passages"][0]
+    assert "t_s" not in passage and "t_s" in near
+    assert passage["estimate_s"] == pytest.approx(own["t_s"], abs=1e-9)
+
+    narrowing = ranges["narrowing"]["gate 135 12"]
+    assert narrowing["half_width_s"] is None
+    best = narrowing["alone"][0]
+    assert best["input"] == "release.angle" and best["half_width_s"] < 0.1
+    # what is said to suffice does
+    again = shown(museum, "--set", "run.t_end=50", *_typed(narrowing["enough"]), "--passage", "12")
+    low, high = map(float, again["ranges"]["passages"][0]["t_s"])
+    assert low < own["t_s"] < high < low + 0.2
+
+    told = text_of(ranges)
+    assert f"passage 12 of gate 135 near {own['t_s']:.6g} s, not proved: " in told
+    assert "Passage 12 of gate 135 is not proved." in told
+    assert "To prove it to ±0.1 s, narrow release.angle to " in told
+
+
+def test_a_passage_within_the_wanted_width_needs_no_narrower_input(with_passages):
+    narrowing = with_passages["ranges"]["narrowing"]["gate 135 3"]
     reached_s = [row["half_width_s"] for row in narrowing["alone"]]
-    assert reached_s == sorted(reached_s) and reached_s[0] < narrowing["half_width_s"]
-    assert ranges["narrowing"]["gate 135 3"]["enough"] == {}
-
-    widths = {"release.angle": "±0.05", **narrowing["enough"]}
-    typed = [word for pair in widths.items() for word in ("--uncertain", "=".join(pair))]
-    again = shown(foucault, museum, *typed, "--passage", "20")["ranges"]["passages"]
-    low, high = map(float, again[0]["t_s"])
-    assert high - low <= 2 * wanted_s
+    assert reached_s == sorted(reached_s)
+    assert reached_s[0] < narrowing["half_width_s"] < 1
+    assert narrowing["enough"] == {}
 
 
-def test_a_precession_that_says_nothing_is_called_useless_beside_its_first_order(foucault, museum):
-    words = (museum, "--uncertain", "angle=±0.05", "--set", "run.t_end=60")
-    document = shown(foucault, *words)
-    ranges = document["ranges"]
+def test_a_precession_that_says_nothing_is_called_useless_beside_its_estimate(long_enough):
+    ranges = long_enough["ranges"]
     assert ranges["useless"] == ["precession_deg_per_h"]
     low, high = map(float, ranges["precession_deg_per_h"])
     assert low < -15.05 < 15.05 < high
     first_low, first_high = map(float, ranges["first_order"]["precession_deg_per_h"])
-    assert first_low < document["motion"]["precession_deg_per_h"] < first_high < first_low + 0.1
-    out = foucault("show", *words)[1]
-    assert "precession useless: " in lines.part(out, "Ranges")
-    # one that tells the way is not
-    assert shown(foucault, "museum_gate")["ranges"]["useless"] == []
+    own = long_enough["motion"]["precession_deg_per_h"]
+    assert first_low < own < first_high < first_low + 0.1
+    assert "precession useless: " in text_of(ranges)
+
+
+def test_a_precession_that_tells_the_way_is_not_called_useless():
+    words = ("paris", "--uncertain", "length=±0.001", "--set", "run.t_end=60")
+    assert shown(*words)["ranges"]["useless"] == []
 
 
 @pytest.mark.parametrize(
@@ -233,9 +303,49 @@ def test_the_g_of_somebodys_own_scene_is_warned_of_and_that_of_a_shipped_one_is_
     own.write_text('[release]\nx = "1"\ny = "0"\n[run]\nt_end = "20"\n')
     status, _, err = foucault("show", own)
     assert status == 0 and "site.gravity_is" in err and "effective" in err
-    assert "site.gravity_is" in shown(foucault, own)["warnings"][0]
+    assert "site.gravity_is" in shown(own)["warnings"][0]
     assert "warning" not in foucault("show", own, "--set", "site.gravity_is=effective")[2]
     assert "warning" not in foucault("show", "paris", "--set", "run.t_end=20")[2]
+
+
+def test_a_bob_that_creeps_is_said_to_and_its_drag_is_warned_of(foucault, museum):
+    words = ("show", museum, "--uncertain", "none", "--set", "run.t_end=20")
+    _, out, err = foucault(*words, "--set", "pendulum.drag=20")
+    assert "no period The bob creeps back to rest" in lines.part(out, "Motion")
+    assert "drag 20 1/s is at least 2 sqrt(g/l) = 1.79 1/s" in lines.unwrapped(out)
+    assert "halves" not in out
+    assert "for a swing that halves in 20 min write 2 ln 2/1200" in lines.unwrapped(err)
+    # a time of 20 minutes, as a rate
+    _, out, err = foucault(*words, "--set", "pendulum.drag=0.0011552")
+    assert "drag 0.0011552 1/s (the swing halves in 20 minutes)" in lines.unwrapped(out)
+    assert "drag" not in err
+
+
+def test_the_ranges_of_a_bob_that_creeps_say_so_too(museum):
+    changes = ("--set", "pendulum.drag=20", "--set", "run.t_end=10")
+    ranges = shown(museum, *changes)["ranges"]
+    told = text_of(ranges)
+    assert "no estimate The bob creeps back to rest" in told
+    assert "no period" not in told and "Derivatives" not in told
+
+
+@pytest.mark.parametrize(
+    ("azimuth", "bearing"),
+    [
+        ("-135", "225°, south-west"),
+        ("0", "90°, east"),
+        ("90", "0°, north"),
+        ("101.5", "348.5°, north-north-west"),
+        ("102", "348°, north-north-west"),
+        ("79", "11°, north"),
+        ("360", "90°, east"),
+    ],
+)
+def test_an_azimuth_has_its_compass_bearing_beside_it(azimuth, bearing):
+    changes = [f"release.azimuth={azimuth}", "release.angle=5"]
+    scene = reference.load_scene("two_radians", changes)
+    pairs = dict(input_facts(scene, {}))
+    assert f"azimuth {azimuth}° (bearing {bearing})" in pairs["release"]
 
 
 def test_no_shipped_scene_is_warned_of():
@@ -258,4 +368,4 @@ def test_ranges_that_a_motion_makes_unprovable_leave_scene_and_motion(foucault, 
     assert status == 0
     assert "period" in lines.part(out, "Motion")
     assert "bits" in lines.part(out, "Ranges")
-    assert "bits" in shown(foucault, wide)["ranges"]["reason"]
+    assert "bits" in shown(wide)["ranges"]["reason"]

@@ -344,6 +344,13 @@ def test_a_scene_as_a_template_is_the_same_scene_and_follows_the_schema(tmp_path
     jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), schema_of("scene.json"))
 
 
+def test_a_template_shows_how_to_write_what_is_uncertain(tmp_path):
+    begin, sign, widths = scene_file(None).partition("# [uncertain]")
+    path = tmp_path / "mine.toml"
+    path.write_text(begin + (sign + widths).replace("# ", "", 1).replace("\n# ", "\n"))
+    assert load_scene(path).uncertain["pendulum.length"] == "±0.001"
+
+
 def test_the_schema_of_scenes_is_the_one_that_the_code_has():
     schema = json.loads(path_of("scene.json").read_text(encoding="utf-8"))
     assert schema == schema_of("scene.json"), "run: python tests/helpers/schemas.py"

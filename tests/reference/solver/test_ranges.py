@@ -106,7 +106,7 @@ def test_every_input_may_be_uncertain(name):
         ({"run.t_end": "±1"}, "expected an input on which the motion depends"),
         (
             {"length": "1 mm"},
-            "expected half of a width, in SI units or degrees, such as ±0.001, +-0.001 or 0.001",
+            "expected half of a width in m, such as ±0.001, +-0.001 or 0.001",
         ),
         ({"length": None}, "expected half of a width"),
         ({3: "0.001"}, "expected an input on which the motion depends"),
