@@ -113,10 +113,10 @@ def atlas(
     files: Annotated[str, FILES] = "",
     as_json: AsJson = False,
 ) -> None:
-    """Make web pages of all golden datasets.
+    """Make web pages: for any pendulum, and of all golden datasets.
 
-    The page of a scene has pictures, bounds and files, judges a program's output dropped on it, and plays the motion
-    where the scene has a golden function.
+    The first page computes the motion of a pendulum that is typed, and judges a program's output dropped on it. The
+    page of a scene has pictures, bounds and files, judges by the golden data, and plays the motion.
     """
     from ..report.atlas.entry import studies_folder
     from ..report.atlas.pages import build
@@ -133,5 +133,5 @@ def atlas(
             }
         )
         return
-    scenes = counted(sum(name.endswith(".html") for name in sizes) - 1, "scene")
+    scenes = counted(sum(name.endswith(".html") for name in sizes) - 2, "scene")
     typer.echo(f"{out / PAGE}: {scenes}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} files")

@@ -1,4 +1,4 @@
-// Answer what files are dropped, in a worker, so that the page can be used meanwhile. Needs judging.js.
+// Answer what files are dropped. Pure functions, for a worker; need judging.js.
 "use strict";
 
 const MOST_POINTS = 800; // of the picture of the errors
@@ -76,13 +76,10 @@ function answer(files, tolerance, truth) {
   }
 }
 
-if (typeof WorkerGlobalScope !== "undefined") {
-  let truth = null;
-  onmessage = async ({ data }) => {
-    if (data.truth) truth = unpacked(data.truth, data.made);
-    else {
-      const result = answer(await textsOf(data.files), data.tolerance, truth);
-      postMessage({ ...result, drop: data.drop }, (result.mine ?? []).map((column) => column.buffer));
-    }
+// Let a worker answer messages {id, task, …} by tasks, functions of the message and of what reports the progress.
+function serve(tasks) {
+  onmessage = async ({ data: { id, task, ...message } }) => {
+    const result = await tasks[task](message, (progress) => postMessage({ id, progress }));
+    postMessage({ id, result });
   };
 }

@@ -33,5 +33,5 @@ function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, 
   parts.push(`<path class="error" d="${points.map(([t, error], i) => `${i ? "L" : "M"}${x(t)} ${y(error)}`).join("")}"/>`);
   if (points.length === 1) parts.push(`<circle cx="${x(points[0][0])}" cy="${y(points[0][1])}" r="3"/>`);
   parts.push(`<text x="${(LEFT + wide) / 2}" y="${TALL - 4}" text-anchor="middle">t in s</text>`);
-  return `<svg viewBox="0 0 ${wide} ${TALL}" class="errors" role="img" aria-label="Position error in m against time">${parts.join("")}</svg>`;
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${wide} ${TALL}" class="errors" role="img" aria-label="Position error in m against time">${parts.join("")}</svg>`;
 }

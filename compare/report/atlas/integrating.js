@@ -2,13 +2,10 @@
 // which its steps begin; the series of a step is made again when it is evaluated. Pure functions, without the page.
 "use strict";
 
-const ORDER = { first: 20, second: 24 }; // of the two runs, whose difference estimates the error
-const TRUNCATION = { first: 2 ** -50, second: 2 ** -54 }; // what the last two terms may add to a step, relative
 const ULP = 2 ** -52;
-const MOST_STEPS = 1_000_000;
+const MOST_STEPS = 1_500_000;
 const REPORTED = 4096; // steps from one report of the progress to the next
-const SAMPLES = 1000; // times at which the two runs are compared
-const CAUTION = 4; // times their difference: it may be small by chance
+const CAUTION = 4; // times the difference of two runs, which may be small by chance
 const NO_SIGN = 2 ** -44; // of the fastest rate: a smaller rate at the release is rounding
 
 class Unsolvable extends Error {}
@@ -122,30 +119,55 @@ function onSphere([nx, ny, nz, ...momentum]) {
   return [nx * factor, ny * factor, nz * factor, ...momentum];
 }
 
-// The steps of a run: {starts, states, order}. `step` is called with each step's series, start and length; it is all that
-// `zerosOf` needs. Throws Unsolvable.
+// Rows of doubles that grow.
+class Rows {
+  constructor(width) {
+    this.width = width;
+    this.count = 0;
+    this.values = new Float64Array(1024 * width);
+  }
+
+  add(row) {
+    const first = this.count * this.width;
+    if (first === this.values.length) {
+      const larger = new Float64Array(2 * first);
+      larger.set(this.values);
+      this.values = larger;
+    }
+    this.values.set(row, first);
+    this.count += 1;
+  }
+
+  all() {
+    return this.values.slice(0, this.count * this.width);
+  }
+}
+
+// The steps of a run: {problem, order, starts, states}. `step` is called with each step's series, start and length; it is
+// all that `zerosOf` needs. Throws Unsolvable.
 function integrate(problem, order, truncation, { step = () => {}, report = () => {} } = {}) {
-  const { start, end } = problem;
-  const starts = [];
-  const states = [];
+  const { start, end, unit } = problem;
+  const starts = new Rows(1);
+  const states = new Rows(6);
   let state = start;
   let time = 0;
   while (time < end) {
     const series = seriesAt(problem, state, order);
     const next = Math.min(time + stepOf(series, order, truncation), end);
-    if (!(next > time) || starts.length === MOST_STEPS) {
-      const share = `t = ${(time * problem.unit).toPrecision(6)} s of ${end * problem.unit} s`;
-      throw new Unsolvable(`The page makes at most ${MOST_STEPS.toLocaleString("en")} steps, and comes to ${share}.`);
+    if (!(next > time) || starts.count === MOST_STEPS) {
+      const most = MOST_STEPS.toLocaleString("en");
+      const reached = (time * unit).toPrecision(6);
+      throw new Unsolvable(`The page makes at most ${most} steps, which reach t = ${reached} s of ${end * unit} s.`);
     }
     const length = next - time; // exact
     step(series, time, length);
-    starts.push(time);
-    states.push(state);
+    starts.add([time]);
+    states.add(state);
     state = onSphere(series.map((coefficients) => sumOf(coefficients, length)));
     time = next;
-    if (starts.length % REPORTED === 0) report(time / end);
+    if (starts.count % REPORTED === 0) report(time / end);
   }
-  return { problem, order, starts: Float64Array.from(starts), states: Float64Array.from(states.flat()) };
+  return { problem, order, starts: starts.all(), states: states.all() };
 }
 
 // The function that returns [x, y, z, vx, vy, vz] in m and m/s at a time in s.
@@ -253,7 +275,7 @@ function zeroWithin(coefficients, { low, high, rises }) {
 // Collect the zeros of a rate over the steps of a run. `rateOf` returns the coefficients of the rate from a series;
 // `atRelease` of them are zero at t = 0. A step waits for the next one, whose rate at its start is that at its end.
 function zerosOf(rateOf, atRelease) {
-  const zeros = []; // { time, rises }
+  const zeros = []; // { time, rises, slope }, the slope being the derivative of the rate
   let waiting = null;
 
   function find(end) {
@@ -263,7 +285,9 @@ function zerosOf(rateOf, atRelease) {
     const values = bernstein(coefficients.length - 1).map((row) => row.reduce((sum, factor, i) => sum + factor * coefficients[i], 0));
     if (end !== null) values[values.length - 1] = end;
     for (const interval of isolated(values)) {
-      zeros.push({ time: time + length * zeroWithin(coefficients, interval), rises: interval.rises });
+      const place = zeroWithin(coefficients, interval);
+      const slope = (place ** skipped * slopeOf(coefficients, place)) / length;
+      zeros.push({ time: time + length * place, rises: interval.rises, slope });
     }
   }
 
@@ -285,6 +309,11 @@ const rateOfX = ([nx]) => nx.slice(1).map((value, k) => (k + 1) * value);
 // The rate at which the bob falls along the plumb line.
 function rateOfFall({ constants: [, , pullNorth, pullUp] }) {
   return ([, ny, nz]) => ny.slice(1).map((value, k) => (k + 1) * (pullNorth * value + pullUp * nz[k + 1]));
+}
+
+// How often this rate is zero at t = 0: it is, but for rounding, where the bob is at rest or is pushed sideways.
+function zeroOfFall({ velocity: [, vy, vz], constants: [, , pullNorth, pullUp] }) {
+  return Math.abs(pullNorth * vy + pullUp * vz) <= NO_SIGN * Math.hypot(pullNorth, pullUp) ? 1 : 0;
 }
 
 const cancel = (a, b) => Math.abs(a + b) <= NO_SIGN * (Math.abs(a) + Math.abs(b));

@@ -1,19 +1,15 @@
-"""The atlas of a folder: a page over all scenes, with a filter, and one for each, which judges a dropped file."""
+"""The atlas of a folder: the page for any pendulum, one over all scenes, and one for each, which judges a dropped file."""
 
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from string import Template
 from typing import Any
 
 from reference.errors import counted
 from reference.scenes.fields import LEVELS
-from reference.scenes.shipped import data_root, in_checkout
 
 from ..drawing import check_matplotlib
 from ..folder import PAGE, check_folder, write_files
@@ -22,8 +18,11 @@ from ..motion_pictures import motion_svgs, thumbnail
 from ..page import Html, page, paragraph, section, text
 from . import parts
 from .entry import Entry, entries
+from .form import fields, form_words, texts_of
+from .pendulum_page import pendulum_page
+from .scripts import data, scripts, source
 
-_EVALUATOR = "function.mjs"
+SCENES = "scenes.html"
 _MOST_EMBEDDED = 500_000  # characters of coefficients in a page; more are in a script beside it
 _PLAIN = "Begin here: pendulums as they hang"  # scenes without flags, but for a long run
 # and the others: each stands in the first group that has one of its flags, or in the last
@@ -36,12 +35,11 @@ _GROUPS = {
 }
 
 
-def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
+def scenes_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
     """Return the page over all scenes, sorted by id: a thumbnail of each, in groups."""
     cards: dict[str, list[str]] = {name: [] for name in (_PLAIN, *_GROUPS)}
     for entry, thumb in zip(scenes, thumbs, strict=True):
         cards[_group(entry)].append(_card(entry, thumb))
-    datasets = sum(len(entry.datasets) for entry in scenes)
     sections = [
         section(name, Html(f'<div class="thumbs">\n{chr(10).join(of)}\n</div>'))
         for name, of in cards.items()
@@ -50,14 +48,21 @@ def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
     return page(
         "Atlas of the Foucault pendulum",
         [_filters(scenes), *sections],
-        lead=paragraph(
-            f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene "
-            "says what it catches and the evidence for its numbers, judges your program's output in the browser, and "
-            "plays the motion where the scene has a golden function."
-        ),
-        script=_script("filtering.js"),
+        lead=_lead_of_scenes(scenes),
+        script=scripts([], ["filtering.js"]),
         styles=source("atlas.css"),
     )
+
+
+def _lead_of_scenes(scenes: Sequence[Entry]) -> Html:
+    """Return the introduction of the page over all scenes."""
+    datasets = sum(len(entry.datasets) for entry in scenes)
+    about = paragraph(
+        f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene "
+        "says what it catches and the evidence for its numbers, judges your program's output in the browser, and "
+        "plays the motion."
+    )
+    return Html(f'{about}\n<p><a href="{PAGE}">Any pendulum: type your own</a></p>')
 
 
 def _group(entry: Entry) -> str:
@@ -85,9 +90,7 @@ def scene_page(
         function: the golden function, None if it has none.
         beside: the file beside the page that holds the function; None if the page itself does.
     """
-    motion = [parts.pictures(svgs)]
-    if function:
-        motion.insert(0, Html(source("player.html")))
+    motion = [Html(source("player.html")), parts.pictures(svgs)]
     first, *further = entry.datasets
     datasets = [parts.dataset(first, base)]
     for golden in further:
@@ -106,14 +109,23 @@ def scene_page(
     units = paragraph("SI units, angles in degrees.")
     sections.append(section("Inputs", units, parts.inputs(entry.golden)))
 
-    page_data = parts.page_data(entry.judged, None if beside else function, beside)
-    judging = _script("function.mjs", "reading.js", "judging.js", "answering.js", kind="judging")
-    drawing = _script("drawing.js", "dropping.js", "playing.js")
+    embedded = None if beside else function
+    page_data = parts.page_data(entry.judged, embedded, beside)
+    workers = ["judging"]
+    if embedded is None:
+        # the page computes what it plays
+        page_data["pendulum"] = {
+            "texts": texts_of(entry.judged.scene),
+            "fields": fields(),
+            "words": form_words(),
+        }
+        workers.append("solving")
+    of_page = ("drawing.js", "showing.js", "starting.js", "playing.js", "dropping.js")
     return page(
         entry.id,
         sections,
         lead=_lead(entry),
-        script=Html(_data(page_data) + judging + drawing),
+        script=Html(data("truth", page_data) + scripts(workers, of_page)),
         styles=source("atlas.css"),
     )
 
@@ -122,7 +134,7 @@ def _lead(entry: Entry) -> Html:
     """Return what is said of a scene below its name."""
     manifest = entry.golden.manifest
     title = paragraph(f"{manifest.title.rstrip('.')}.")
-    links = f'<p><a href="index.html">All scenes</a> · {text(manifest.source)}</p>'
+    links = f'<p><a href="{SCENES}">All scenes</a> · <a href="{PAGE}">Any pendulum</a> · {text(manifest.source)}</p>'
     return Html(f"{title}\n{parts.flags(entry)}\n{links}")
 
 
@@ -171,7 +183,7 @@ def _drop(entry: Entry, function: dict[str, Any] | None, beside: str | None) -> 
         known = f"the golden function, which has {bounds} of the truth at every time (proven)"
     if function and beside:
         size = f"{len(function['coefficients']) / 1e6:.1f} MB"
-        known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"
+        known += f"; its {size} are in {beside} beside this page, read with the first file"
     words = {"rows": rows, "transits": transits, "known": known, "command": entry.score_command()}
     return Html(
         Template(source("drop.html").rstrip()).substitute(
@@ -180,37 +192,10 @@ def _drop(entry: Entry, function: dict[str, Any] | None, beside: str | None) -> 
     )
 
 
-def _data(document: dict[str, Any]) -> Html:
-    content = json.dumps(document, separators=(",", ":"), ensure_ascii=False, default=parts.plain)
-    content = content.replace("<", "\\u003c")
-    return Html(f'<script type="application/json" id="truth">{content}</script>\n')
-
-
-def _script(*names: str, kind: str = "page") -> Html:
-    return Html("".join(f'<script class="{kind}">\n{source(name)}</script>\n' for name in names))
-
-
-@cache
-def source(name: str) -> str:
-    """Return a style, a script or a part of a page.
-
-    Of the program in docs/readers it is the function that evaluates.
-    """
-    if name == _EVALUATOR:
-        folder = data_root().parent / "docs" / "readers" if in_checkout() else files(__package__)
-        program = folder.joinpath(name).read_text(encoding="utf-8")
-        return str(
-            re.findall(
-                r"^// Return what.*?^export (function.*?^}\n)", program, re.MULTILINE | re.DOTALL
-            )[0]
-        )
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")
-
-
 def build(
     data: Path, out: Path, studies: Path | None, base: str, report: Callable[[int, int, str], None]
 ) -> dict[str, int]:
-    """Write a page over all datasets of a folder, and one for each scene.
+    """Write a page for any pendulum, one over all datasets of a folder, and one for each scene.
 
     Args:
         data: the folder of the datasets.
@@ -230,7 +215,7 @@ def build(
     check_matplotlib("foucault atlas")
     check_folder(out, [PAGE])
     scenes = entries(data, studies)
-    check_folder(out, [f"{entry.id}.html" for entry in scenes])
+    check_folder(out, [SCENES, *(f"{entry.id}.html" for entry in scenes)])
     pages = {}
     thumbs = []
     for count, entry in enumerate(scenes):
@@ -244,7 +229,8 @@ def build(
             pages[beside] = f"globalThis.goldenFunction = {numbers};\n"
         pages[f"{entry.id}.html"] = scene_page(entry, motion_svgs(motion), base, function, beside)
         thumbs.append(thumbnail(motion))
-    pages[PAGE] = index_page(scenes, thumbs)
+    pages[SCENES] = scenes_page(scenes, thumbs)
+    pages[PAGE] = pendulum_page(SCENES)
     write_files(out, pages)
     report(len(scenes), len(scenes), PAGE)
     return {name: len(content.encode()) for name, content in pages.items()}

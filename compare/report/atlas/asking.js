@@ -1,0 +1,270 @@
+// The page for any pendulum: its form, its motion, what is judged by it, and what can be kept of it.
+"use strict";
+
+const { fields, presets, words } = JSON.parse(document.getElementById("known").textContent);
+const at = (id) => document.getElementById(id);
+const form = at("pendulum");
+const BEGIN = "paris";
+const PAUSE = 250; // ms from the last key to the motion
+const COMPASS = ["release.azimuth", "release.azimuth_rate"];
+
+let pendulum = null; // { title, texts } that the form has, without a mistake
+let motion = null; // { worker, facts } of the pendulum that is shown
+let started = 0; // motions so far: of two the later one is shown
+let timer = null;
+let files = []; // that were judged last
+
+// The form.
+
+const input = (name) => at(name);
+const choicesOf = (name) => [...at(name).querySelectorAll("input")];
+const isCompass = (name) => COMPASS.includes(name) && at("direction").value === "bearing";
+
+function turned(name, text) {
+  if (!isCompass(name) || !decimal(words).test(text)) return text;
+  return name === "release.azimuth" ? turnedCompass(text) : negated(text);
+}
+
+// The texts that the form has, by field; an empty field has its default.
+function textsOfForm() {
+  const texts = {};
+  for (const { name, choices } of fields) {
+    if (name.startsWith("release.") && !KINDS[at("kind").value].includes(name)) continue;
+    const text = choices ? choicesOf(name).find((button) => button.checked)?.value : input(name).value.trim();
+    if (text) texts[name] = turned(name, text);
+  }
+  return texts;
+}
+
+function fill({ title, texts }) {
+  at("title").value = title;
+  at("kind").value = kindOf(texts);
+  at("direction").value = "azimuth";
+  for (const { name, choices, default: value } of fields) {
+    const text = texts[name] ?? value ?? "";
+    if (choices) for (const button of choicesOf(name)) button.checked = button.value === text;
+    else input(name).value = text;
+  }
+  showKind();
+}
+
+function showKind() {
+  const kind = at("kind").value;
+  for (const [other, names] of Object.entries(KINDS)) {
+    for (const name of names) input(name).closest(".field").hidden = other !== kind;
+  }
+  at("direction-line").hidden = kind !== "angles";
+  for (const name of COMPASS) {
+    const label = input(name).closest(".field").querySelector("label").firstChild;
+    const word = at("direction").value;
+    label.data = name === "release.azimuth" ? word : `${word} rate`;
+  }
+}
+
+// Write the same direction as a bearing, or as an azimuth again.
+function turnDirections() {
+  for (const name of COMPASS) {
+    const text = input(name).value.trim();
+    if (!decimal(words).test(text)) continue;
+    input(name).value = name === "release.azimuth" ? turnedCompass(text) : negated(text);
+  }
+}
+
+// Say what is wrong at each field; return whether anything is.
+function showWrong(texts) {
+  const wrong = wrongOf(texts, fields, words);
+  for (const { name, choices } of fields) {
+    if (choices) continue;
+    const found = wrong[name];
+    at(`${name}.wrong`).textContent = found ? `Expected ${found.expected}. ${found.advice}`.trim() : "";
+    input(name).setAttribute("aria-invalid", String(Boolean(found)));
+  }
+  return Object.keys(wrong).length > 0;
+}
+
+// The motion.
+
+const places = ({ value, error }) => {
+  if (!(error < Math.abs(value))) return `0 ± ${error.toPrecision(2)}`;
+  const digits = Math.floor(Math.log10(Math.abs(value))) - Math.ceil(Math.log10(error)) + 1;
+  return String(Number(value.toPrecision(Math.min(Math.max(digits, 1), 15))));
+};
+
+function hangs({ hangs: aside, tilt }) {
+  if (tilt === null) return "none";
+  if (aside === 0) return "in the vertical";
+  return `${small(Math.abs(aside))} m ${aside < 0 ? "south" : "north"} of the vertical, a tilt of ${small(Math.abs(tilt))}°`;
+}
+
+function factRows(facts) {
+  const rows = [];
+  if (facts.period) rows.push(["period", `${places(facts.period)} s`]);
+  if (facts.precession) {
+    const way = facts.turn ? (facts.precession.value < 0 ? ", clockwise" : ", anticlockwise") : "";
+    rows.push(["precession", `${places(facts.precession)} °/h${way}`]);
+  }
+  if (facts.turn) rows.push(["full turn", `${places(facts.turn)} h`]);
+  if (facts.reason) rows.push([facts.period ? "no full turn" : "no period", facts.reason]);
+  rows.push(["rest position", hangs(facts)]);
+  rows.push(["pull", `${rounded(facts.pull, 9)} m/s², gravity and centrifugal force together`]);
+  const count = facts.transits === null ? words.UNDECIDED_TRANSITS : facts.transits.toLocaleString("en");
+  rows.push(["transits", facts.transits ? `${count}, each within ${small(facts.transitError)} s (estimated)` : count]);
+  rows.push(["error", `${small(facts.error)} m at the end, estimated from a second run`]);
+  return rows;
+}
+
+const say = (text) => { at("state").textContent = text; };
+
+async function solvePendulum() {
+  const number = ++started;
+  motion?.worker.stop();
+  const worker = startedWorker("solving");
+  motion = { worker, facts: null };
+  const begin = performance.now();
+  const report = (share) => number === started && say(`Computing: ${Math.round(100 * share)} %`);
+  const { texts } = pendulum;
+  say("Computing …");
+  const solved = await worker.ask("solve", { texts, fields, words }, report);
+  if (number !== started) return;
+  if (solved.refused) {
+    say(`${solved.refused} On the command line: ${at("prove").textContent}`);
+    at("facts").replaceChildren();
+    return;
+  }
+  motion.facts = solved.facts;
+  const seconds = (performance.now() - begin) / 1000;
+  say(`Computed in ${seconds.toPrecision(2)} s.`);
+  at("facts").replaceChildren(factsMade(factRows(solved.facts)));
+  at("tolerance").placeholder = small(words.TOLERANCE * solved.facts.amplitude);
+  const wasPlaying = player.playing();
+  player.show(playedMotion(numbersOf(texts, fields), solved));
+  document.documentElement.dataset.moved = String(performance.now());
+  if (!still.matches && (wasPlaying || number === 1)) player.play(true);
+  if (files.length) judgeFiles(files);
+}
+
+// Take what the form says: show its mistakes, or its motion.
+function take() {
+  const texts = textsOfForm();
+  showKind();
+  if (showWrong(texts)) {
+    say("A field is wrong: see below it.");
+    return;
+  }
+  pendulum = { title: plainTitle(at("title").value), texts };
+  const fragment = fragmentOf(pendulum.title, texts, fields);
+  if (location.hash.slice(1) !== fragment) history.replaceState(null, "", `#${fragment}`);
+  at("toml").textContent = tomlOf(pendulum.title, texts, fields);
+  at("step").placeholder = String(numbersOf(texts, fields).run.grid_step);
+  solvePendulum();
+}
+
+function takeSoon() {
+  clearTimeout(timer);
+  timer = setTimeout(take, PAUSE);
+}
+
+function takePreset(id) {
+  const chosen = presets.find((preset) => preset.id === id);
+  at("about").textContent = chosen ? chosen.title : "";
+  if (!chosen) return;
+  fill({ title: chosen.title, texts: chosen.texts });
+  take();
+}
+
+function takeAddress() {
+  const { title, texts } = textsOfFragment(location.hash, fields);
+  if (!Object.keys(texts).length) {
+    at("preset").value = BEGIN;
+    takePreset(BEGIN);
+    return;
+  }
+  at("preset").value = "";
+  at("about").textContent = "";
+  fill({ title, texts });
+  take();
+}
+
+// The judge.
+
+const shown = at("verdict");
+
+function knownBy({ bound_m: bound }) {
+  return `the motion above, whose error is estimated at ${small(bound)} m`;
+}
+
+function furtherSteps(result) {
+  if (result.verdict !== "disagrees") return [];
+  if (result.notes.some((note) => note.includes("put right"))) return [];
+  const command = "foucault score pendulum.toml FILE";
+  return [`This page finds no reason in the clock, the unit or the axes. Save pendulum.toml below; the command looks further: ${command}`];
+}
+
+async function judgeFiles(chosen) {
+  if (!chosen.length) return;
+  files = [...chosen];
+  if (!motion?.facts) return;
+  const { worker } = motion;
+  shown.className = "working";
+  shown.replaceChildren(made("p", { className: "word" }, "Judging …"));
+  const result = await worker.ask("judge", { files, tolerance: at("tolerance").value });
+  if (worker !== motion.worker) return;
+  const scene = { name: pendulum.title || "this pendulum", end: numbersOf(pendulum.texts, fields).run.t_end, known: knownBy };
+  showVerdict(shown, files, result, scene, furtherSteps(result));
+  if (result.mine) player.drop(result.mine, result.path.max_error_m);
+}
+
+function judgePasted() {
+  const text = at("pasted").value;
+  if (text.trim()) judgeFiles([new File([text], "your rows")]);
+}
+
+// What can be kept.
+
+function save(name, text, type) {
+  const address = URL.createObjectURL(new Blob([text], { type }));
+  const link = made("a", { href: address, download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(address), 1000);
+}
+
+async function saveRows() {
+  const run = numbersOf(pendulum.texts, fields).run;
+  const step = Number(at("step").value || run.grid_step);
+  if (!(step > 0 && run.t_end / step <= words.MAX_ROWS)) {
+    at("saved").textContent = `Expected a number above 0, and at most ${words.MAX_ROWS} rows.`;
+    return;
+  }
+  if (!motion?.facts) return;
+  const csv = await motion.worker.ask("print", { step });
+  save("pendulum.csv", csv, "text/csv");
+  at("saved").textContent = `${csv.split("\n").length - 2} rows in pendulum.csv.`;
+}
+
+async function copyLink() {
+  try {
+    await navigator.clipboard.writeText(location.href);
+    at("copied").textContent = "Copied.";
+  } catch {
+    at("copied").textContent = location.href; // a page from a file may not copy
+  }
+}
+
+const player = playerOf(at("player"), async () => null);
+form.addEventListener("submit", (event) => event.preventDefault());
+form.addEventListener("input", ({ target }) => {
+  if (target.closest("#player") || target.id === "preset") return;
+  at("preset").value = "";
+  at("about").textContent = "";
+  takeSoon();
+});
+at("preset").addEventListener("change", (event) => takePreset(event.target.value));
+at("tolerance").addEventListener("change", () => judgeFiles(files));
+at("judge").addEventListener("click", judgePasted);
+at("csv").addEventListener("click", saveRows);
+at("copy").addEventListener("click", copyLink);
+at("save").addEventListener("click", () => save("pendulum.toml", at("toml").textContent, "application/toml"));
+at("direction").addEventListener("change", turnDirections);
+addEventListener("hashchange", takeAddress);
+takeFiles(at("drop"), judgeFiles);
+takeAddress();

@@ -1,0 +1,95 @@
+// Show the verdict on a file. Whatever comes from a file, a form or an address is inserted as text, never as HTML.
+"use strict";
+
+// An element with properties and children, which are texts or elements.
+function made(name, properties = {}, ...children) {
+  const element = Object.assign(document.createElement(name), properties);
+  element.append(...children);
+  return element;
+}
+
+// The names and descriptions of a list; a description is a text or several children.
+function factsMade(rows) {
+  const items = rows.flatMap(([name, ...value]) => [made("dt", {}, name), made("dd", {}, ...value.flat())]);
+  return made("dl", {}, ...items);
+}
+
+// A number with its digits, the first wrong one marked.
+function marked(value, place) {
+  const digits = value.toFixed(Math.min(Math.max(place + 3, 1), 17));
+  const at = digits.indexOf(".") + place + (place > 0 ? 0 : -1);
+  if (at < 0 || !/\d/.test(digits[at] ?? "")) return [digits];
+  return [digits.slice(0, at), made("mark", {}, digits[at]), digits.slice(at + 1)];
+}
+
+// A bound is given 1.005 times as large, so that rounding to three digits does not take from it.
+const atMost = (bound) => small(1.005 * bound);
+
+function pathRows({ path, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude }, end, known) {
+  const { worst } = path;
+  const place = firstWrongPlace(worst.difference || bound);
+  const rows = [
+    ["judged", `${path.rows.toLocaleString("en")} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${end} s`],
+    ["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`],
+    ["held against", known],
+    ["rms, at the end", `${small(path.rms_error_m)} m, ${small(path.end_error_m)} m`],
+    ["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(amplitude)} m`],
+    ["first wrong digit", `${place > 0 ? `decimal ${place}` : "before the point"} of ${worst.component} at t = ${worst.t} s`],
+    ["expected", marked(worst.expected, place)],
+    ["got", marked(worst.got, place)],
+  ];
+  if (path.wrong_from_s !== null) rows.push(["beyond tolerance", `from t = ${path.wrong_from_s} s on`]);
+  return rows;
+}
+
+function transitRows({ matched, missed, extra, max_error_s: late, max_conditioned_error_m: moved }) {
+  function listed(times) {
+    const first = times.slice(0, 3).map((t) => t.toFixed(6)).join(", ");
+    return times.length ? ` (${first}${times.length > 3 ? " …" : ""} s)` : "";
+  }
+  return [
+    ["transits", `${matched} matched, ${missed.length} missed${listed(missed)}, ${extra.length} extra${listed(extra)}`],
+    ["their error", `${small(late)} s, ${small(moved)} m of the motion`],
+  ];
+}
+
+// A picture that drawing.js writes: of numbers alone.
+function pictureMade(svg) {
+  const { documentElement } = new DOMParser().parseFromString(svg, "image/svg+xml");
+  return document.importNode(documentElement, true);
+}
+
+function showRefusal(shown, reason) {
+  shown.className = "refused";
+  shown.replaceChildren(made("p", { className: "word" }, made("strong", {}, "Not judged")), made("p", {}, reason));
+}
+
+// Show a verdict on files in an element. `scene` has its name and end, and `known` says by what was judged; `notes` follow
+// those of the verdict.
+function showVerdict(shown, files, result, { name, end, known }, notes = []) {
+  if (result.refused) {
+    showRefusal(shown, result.refused);
+    return;
+  }
+  const rows = result.path ? pathRows(result, end, known(result)) : [];
+  if (result.transits) rows.push(...transitRows(result.transits));
+  const items = [...result.notes, ...notes].map((note) => made("li", {}, note));
+  const names = files.map((file) => file.name).join(" and ");
+  const word = made("p", { className: "word" }, made("strong", {}, `${names} ${result.verdict}`), ` with ${name}`);
+  shown.className = result.verdict;
+  shown.replaceChildren(word, factsMade(rows), made("ul", {}, ...items));
+  const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
+  if (result.points) shown.append(pictureMade(errorPicture(result, wide)));
+}
+
+// Take the files that are dropped on a zone or chosen.
+function takeFiles(zone, take) {
+  for (const kind of ["dragenter", "dragover", "dragleave", "drop"]) {
+    zone.addEventListener(kind, (event) => {
+      event.preventDefault();
+      zone.classList.toggle("over", kind === "dragenter" || kind === "dragover");
+      if (kind === "drop") take(event.dataTransfer.files);
+    });
+  }
+  zone.querySelector("input[type=file]").addEventListener("change", (event) => take(event.target.files));
+}

@@ -1,0 +1,127 @@
+// Solve a pendulum twice and make of it what judging.js takes for the truth; the difference of the runs estimates the
+// error. Needs integrating.js, swinging.js and answering.js. Pure functions, without the page.
+"use strict";
+
+const FIRST = { order: 20, truncation: 2 ** -50, moved: 0 };
+const SECOND = { order: 24, truncation: 2 ** -54, moved: 1 }; // other steps; constants moved by a unit in the last place
+const SAMPLES = 1000; // times at which the two runs are compared
+const MOST_ROWS = 20_000; // of the grid that shows how far the bob swings
+
+// One run: its steps, the function of its motion, its transits and the zeros of its rate of falling.
+function runOf(scene, { order, truncation, moved }, report) {
+  const problem = problemOf(scene, moved);
+  const transits = zerosOf(rateOfX, zeroAtRelease(problem));
+  const falls = zerosOf(rateOfFall(problem), zeroOfFall(problem));
+  const step = (...of) => {
+    transits.step(...of);
+    falls.step(...of);
+  };
+  const steps = integrate(problem, order, truncation, { step, report });
+  transits.end();
+  falls.end();
+  return { problem, steps, at: motionOf(steps), transits: transits.zeros, falls: falls.zeros };
+}
+
+// The estimated error of the position in m, as a function of the time: it never decreases.
+function errorOf(first, second, end) {
+  const { length, swing } = first.problem;
+  const least = 4 * ULP * length;
+  const errors = [least];
+  for (let i = 1; i <= SAMPLES; i += 1) {
+    const time = (end * i) / SAMPLES;
+    const one = first.at(time);
+    const other = second.at(time);
+    const gaps = one.map((value, k) => value - other[k]);
+    const phase = swing ? norm(gaps.slice(3)) / swing : 0; // of a bob at its highest point
+    errors.push(Math.max(errors[i - 1], least + CAUTION * (norm(gaps.slice(0, 3)) + phase)));
+  }
+  return (time) => errors[Math.min(Math.ceil((SAMPLES * time) / end), SAMPLES)];
+}
+
+// Rows of a motion at each step and at the end: {t, x, y, z, vx, vy, vz}.
+function gridOf(at, end, step) {
+  const count = Math.floor((end / step) * (1 + 2 ** -50));
+  const t = Array.from({ length: count + 1 }, (_, i) => i * step);
+  if (end - t[count] > step * 2 ** -30) t.push(end);
+  else t[count] = end;
+  const states = t.map(at);
+  const columns = ["x", "y", "z", "vx", "vy", "vz"].map((name, k) => [name, Float64Array.from(states, (state) => state[k])]);
+  return { t: Float64Array.from(t), ...Object.fromEntries(columns) };
+}
+
+// Transits with the weight |ax|/ω that turns an error of time into one of position; null if the two runs do not agree.
+function transitsOf(first, second, omega) {
+  const { length, unit } = first.problem;
+  if (first.transits.length !== second.transits.length) return null;
+  const acceleration = length / unit ** 2;
+  return {
+    t: Float64Array.from(first.transits, ({ time }) => time * unit),
+    weight: Float64Array.from(first.transits, ({ slope }) => (omega ? (acceleration * Math.abs(slope)) / omega : 0)),
+    error: first.transits.reduce((most, { time }, i) => Math.max(most, CAUTION * unit * Math.abs(time - second.transits[i].time)), 0),
+  };
+}
+
+// The motion of a scene, whose fields are numbers. Throws Unsolvable.
+function solve(scene, words, report = () => {}) {
+  const end = scene.run.t_end;
+  const first = runOf(scene, FIRST, (share) => report(share / 2));
+  const second = runOf(scene, SECOND, (share) => report((1 + share) / 2));
+  const error = errorOf(first, second, end);
+  const grid = gridOf(first.at, end, Math.max(scene.run.grid_step, end / MOST_ROWS));
+
+  const { length, swing, unit, constants } = first.problem;
+  const fastest = grid.vx.reduce((most, value, i) => Math.max(most, Math.hypot(value, grid.vy[i], grid.vz[i])), 0);
+  const omega = Math.max(swing, fastest / length);
+  const amplitude = grid.x.reduce((most, value, i) => Math.max(most, Math.hypot(value, grid.y[i])), 0) || length;
+  const tilt = tiltOf(constants);
+  const transits = transitsOf(first, second, omega);
+  return {
+    scene,
+    steps: first.steps,
+    at: first.at,
+    error,
+    facts: {
+      ...swingFacts(first, second, words.REASONS),
+      error: error(end),
+      amplitude,
+      wide: grid.z.some((height) => height > -0.7 * length),
+      pull: (Math.hypot(constants[2], constants[3]) / unit ** 2) * length,
+      tilt: tilt === null ? null : degrees(tilt),
+      hangs: tilt === null ? null : length * Math.sin(tilt),
+      transits: transits && transits.t.length,
+      transitError: transits && transits.error,
+    },
+    truth: {
+      t_end: end,
+      grid_step: scene.run.grid_step,
+      length_m: length,
+      amplitude_m: amplitude,
+      omega,
+      grid,
+      transits,
+      no_transits: transits ? null : words.UNDECIDED_TRANSITS,
+      possible: [],
+      at: first.at,
+      end,
+      bounds: { x: error(end), y: error(end), z: error(end) },
+      words,
+    },
+  };
+}
+
+// A motion as CSV with all digits of its doubles.
+function csvOf({ at, scene }, step) {
+  const rows = gridOf(at, scene.run.t_end, step);
+  const names = Object.keys(rows);
+  const lines = Array.from(rows.t, (_, i) => names.map((name) => String(rows[name][i])).join(","));
+  return `${names.join(",")}\n${lines.join("\n")}\n`;
+}
+
+// The verdict on files by a motion. One that is not known more closely than the tolerance judges nothing.
+function answerBy({ truth, facts }, files, tolerance) {
+  const result = answer(files, tolerance, truth);
+  if (result.refused || result.tolerance_m >= facts.error) return result;
+  const known = `${facts.error.toPrecision(3)} m`;
+  const allowed = `${result.tolerance_m.toPrecision(3)} m`;
+  return { refused: `This page knows the motion to ${known} only, and the tolerance is ${allowed}. Shorten the run, or use the command.` };
+}

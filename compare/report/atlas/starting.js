@@ -1,0 +1,51 @@
+// Start the worker that solves a pendulum, made of the page's own scripts, and ask it.
+"use strict";
+
+// What a worker of the page's scripts with a class answers: `ask(task, message, report)` is a promise.
+function startedWorker(kind) {
+  const scripts = [...document.querySelectorAll(`script.${kind}`)].map((script) => script.textContent);
+  const address = URL.createObjectURL(new Blob(scripts, { type: "text/javascript" }));
+  const worker = new Worker(address);
+  const waiting = new Map();
+  let asked = 0;
+
+  worker.onmessage = ({ data: { id, progress, result } }) => {
+    const { done, report } = waiting.get(id);
+    if (progress !== undefined) {
+      report(progress);
+      return;
+    }
+    waiting.delete(id);
+    done(result);
+  };
+  worker.onerror = (event) => {
+    for (const { done } of waiting.values()) done({ refused: `The script failed: ${event.message}.` });
+    waiting.clear();
+  };
+
+  return {
+    ask(task, message, report = () => {}) {
+      const id = ++asked;
+      worker.postMessage({ id, task, ...message });
+      return new Promise((done) => waiting.set(id, { done, report }));
+    },
+    stop() {
+      worker.terminate();
+      URL.revokeObjectURL(address);
+    },
+  };
+}
+
+// The motion that a worker has solved, as a player plays it.
+function playedMotion(numbers, { steps, facts }) {
+  const { length, swing } = problemOf(numbers);
+  const end = numbers.run.t_end;
+  return {
+    at: motionOf({ problem: problemOf(numbers), ...steps }),
+    end,
+    period: Math.min(end, swing ? (2 * Math.PI) / swing : end),
+    amplitude: facts.amplitude,
+    length,
+    wide: facts.wide,
+  };
+}
