@@ -110,20 +110,27 @@ function factRows(facts) {
   const count = facts.transits === null ? words.UNDECIDED_TRANSITS : facts.transits.toLocaleString("en");
   rows.push(["transits", facts.transits ? `${count}, each within ${small(facts.transitError)} s (estimated)` : count]);
   rows.push(["error", `${small(facts.error)} m at the end, estimated from a second run`]);
+  if (facts.until < facts.end) rows.push(["in doubles", `known to a millionth of the amplitude up to t = ${small(facts.until)} s; ask the command for the rest`]);
   return rows;
 }
 
 const say = (text) => { at("state").textContent = text; };
 
+// Show the first swings of the pendulum, and then the whole motion.
 async function solvePendulum() {
   const number = ++started;
   motion?.worker.stop();
   const worker = startedWorker("solving");
   motion = { worker, facts: null };
   const begin = performance.now();
-  const report = (share) => number === started && say(`Computing: ${Math.round(100 * share)} %`);
   const { texts } = pendulum;
+  const numbers = numbersOf(texts, fields);
   say("Computing …");
+  const first = await worker.ask("begin", { texts, fields });
+  if (number !== started) return;
+  if (!first.refused) showMotion(playedMotion(numbers, first), number);
+
+  const report = (share) => number === started && say(`Computing: ${Math.round(100 * share)} %`);
   const solved = await worker.ask("solve", { texts, fields, words }, report);
   if (number !== started) return;
   if (solved.refused) {
@@ -132,15 +139,18 @@ async function solvePendulum() {
     return;
   }
   motion.facts = solved.facts;
-  const seconds = (performance.now() - begin) / 1000;
-  say(`Computed in ${seconds.toPrecision(2)} s.`);
+  say(`Computed in ${((performance.now() - begin) / 1000).toPrecision(2)} s.`);
   at("facts").replaceChildren(factsMade(factRows(solved.facts)));
   at("tolerance").placeholder = small(words.TOLERANCE * solved.facts.amplitude);
-  const wasPlaying = player.playing();
-  player.show(playedMotion(numbersOf(texts, fields), solved));
-  document.documentElement.dataset.moved = String(performance.now());
-  if (!still.matches && (wasPlaying || number === 1)) player.play(true);
+  player.show(playedMotion(numbers, solved), player.time());
   if (files.length) judgeFiles(files);
+}
+
+// Play a new motion from its first swing on; the first of a page begins to move by itself.
+function showMotion(played, number) {
+  const moves = number === 1 ? !still.matches : player.playing();
+  player.show(played);
+  player.play(moves);
 }
 
 // Take what the form says: show its mistakes, or its motion.

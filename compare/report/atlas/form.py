@@ -160,7 +160,7 @@ def _input(field: Mapping[str, Any]) -> Html:
 def _choice(name: str, meaning: str) -> Html:
     """Return radio buttons; the meaning has a part for each choice: "one: …; other: …"."""
     buttons = "".join(_button(name, part) for part in meaning.split("; "))
-    return Html(f'<div class="field choices" role="radiogroup" id="{name}" aria-label="what g means">{buttons}</div>')
+    return Html(f'<div class="field meanings" role="radiogroup" id="{name}" aria-label="what g means">{buttons}</div>')
 
 
 def _button(name: str, part: str) -> str:

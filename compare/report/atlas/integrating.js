@@ -208,7 +208,7 @@ const NARROWEST = 2 ** -40; // of a step: two zeros that are closer are none
 const binomials = new Map();
 
 // The factors that turn coefficients of powers into those of Bernstein's polynomials: row j has C(j, i)/C(degree, i).
-function bernstein(degree) {
+function factorsOf(degree) {
   if (binomials.has(degree)) return binomials.get(degree);
   const rows = [];
   for (let j = 0; j <= degree; j += 1) {
@@ -218,6 +218,26 @@ function bernstein(degree) {
   }
   binomials.set(degree, rows);
   return rows;
+}
+
+// The Bernstein coefficients on [0, 1] of a polynomial.
+function bernsteinOf(coefficients) {
+  return factorsOf(coefficients.length - 1).map((row, j) => {
+    let sum = 0;
+    for (let i = 0; i <= j; i += 1) sum += row[i] * coefficients[i];
+    return sum;
+  });
+}
+
+// The polynomial of a part of the step's length, without its first zeros at the start.
+function scaled(rate, skipped, length) {
+  const coefficients = [];
+  let power = length ** skipped;
+  for (let k = skipped; k < rate.length; k += 1) {
+    coefficients.push(rate[k] * power);
+    power *= length;
+  }
+  return coefficients;
 }
 
 const isNegative = (value) => value < 0; // zero counts as positive: a zero where two steps meet is found once
@@ -281,8 +301,8 @@ function zerosOf(rateOf, atRelease) {
   function find(end) {
     const { rate, time, length } = waiting;
     const skipped = time === 0 ? Math.min(atRelease, rate.length - 1) : 0;
-    const coefficients = rate.slice(skipped).map((value, k) => value * length ** (k + skipped));
-    const values = bernstein(coefficients.length - 1).map((row) => row.reduce((sum, factor, i) => sum + factor * coefficients[i], 0));
+    const coefficients = scaled(rate, skipped, length);
+    const values = bernsteinOf(coefficients);
     if (end !== null) values[values.length - 1] = end;
     for (const interval of isolated(values)) {
       const place = zeroWithin(coefficients, interval);
@@ -304,11 +324,17 @@ function zerosOf(rateOf, atRelease) {
   };
 }
 
-const rateOfX = ([nx]) => nx.slice(1).map((value, k) => (k + 1) * value);
+function derivative(coefficients) {
+  const rate = [];
+  for (let k = 1; k < coefficients.length; k += 1) rate.push(k * coefficients[k]);
+  return rate;
+}
+
+const rateOfX = ([nx]) => derivative(nx);
 
 // The rate at which the bob falls along the plumb line.
 function rateOfFall({ constants: [, , pullNorth, pullUp] }) {
-  return ([, ny, nz]) => ny.slice(1).map((value, k) => (k + 1) * (pullNorth * value + pullUp * nz[k + 1]));
+  return ([, ny, nz]) => derivative(ny.map((value, k) => pullNorth * value + pullUp * nz[k]));
 }
 
 // How often this rate is zero at t = 0: it is, but for rounding, where the bob is at rest or is pushed sideways.

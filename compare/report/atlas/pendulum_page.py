@@ -34,7 +34,7 @@ def pendulum_page(scenes: str) -> str:
     }
     lead = f'{paragraph(_LEAD)}\n<p><a href="{scenes}">All scenes with golden data</a></p>'
     return page(
-        "A Foucault pendulum, any",
+        "Any Foucault pendulum",
         sections,
         lead=Html(lead),
         script=Html(data("known", document) + scripts(["solving"], _SCRIPTS)),

@@ -5,6 +5,18 @@
 if (typeof WorkerGlobalScope !== "undefined") {
   let solution = null;
 
+  const sent = ({ starts, states, order }) => ({ starts, states, order });
+
+  function begun({ texts, fields }) {
+    try {
+      const { steps, facts } = firstSwings(numbersOf(texts, fields));
+      return { facts, steps: sent(steps) };
+    } catch (error) {
+      if (!(error instanceof Unsolvable)) throw error;
+      return { refused: error.message };
+    }
+  }
+
   function solved({ texts, fields, words }, report) {
     try {
       solution = solve(numbersOf(texts, fields), words, report);
@@ -12,13 +24,12 @@ if (typeof WorkerGlobalScope !== "undefined") {
       if (!(error instanceof Unsolvable)) throw error;
       return { refused: error.message };
     }
-    const { starts, states, order } = solution.steps;
-    return { facts: solution.facts, steps: { starts, states, order } };
+    return { facts: solution.facts, steps: sent(solution.steps) };
   }
 
   const judged = async ({ files, tolerance }) => answerBy(solution, await textsOf(files), tolerance);
 
   const printed = ({ step }) => csvOf(solution, step);
 
-  serve({ solve: solved, judge: judged, print: printed });
+  serve({ begin: begun, solve: solved, judge: judged, print: printed });
 }

@@ -156,5 +156,5 @@ function playerOf(element, load) {
   });
   addEventListener("resize", () => motion && draw());
   still.addEventListener("change", () => playing && play(false));
-  return { show, ready, drop, play, playing: () => playing };
+  return { show, ready, drop, play, playing: () => playing, time: () => now };
 }

@@ -5,6 +5,7 @@
 const FIRST = { order: 20, truncation: 2 ** -50, moved: 0 };
 const SECOND = { order: 24, truncation: 2 ** -54, moved: 1 }; // other steps; constants moved by a unit in the last place
 const SAMPLES = 1000; // times at which the two runs are compared
+const FIRST_SWINGS = 10; // that are shown before the whole run is there
 const MOST_ROWS = 20_000; // of the grid that shows how far the bob swings
 
 // One run: its steps, the function of its motion, its transits and the zeros of its rate of falling.
@@ -22,6 +23,25 @@ function runOf(scene, { order, truncation, moved }, report) {
   return { problem, steps, at: motionOf(steps), transits: transits.zeros, falls: falls.zeros };
 }
 
+// How far the bob gets: {amplitude, wide, fastest}, by the rows of a motion.
+function reachOf({ x, y, z, vx, vy, vz }, length) {
+  const most = (values) => values.reduce((best, value) => Math.max(best, value), 0);
+  return {
+    amplitude: most(x.map((value, i) => Math.hypot(value, y[i]))) || length,
+    wide: z.some((height) => height > -0.7 * length),
+    fastest: most(vx.map((value, i) => Math.hypot(value, vy[i], vz[i]))),
+  };
+}
+
+// The first swings of a scene, which are there at once: its steps, and what a player needs to know.
+function firstSwings(scene) {
+  const { swing, length } = problemOf(scene);
+  const end = Math.min(scene.run.t_end, (FIRST_SWINGS * 2 * Math.PI) / swing);
+  const problem = problemOf({ ...scene, run: { ...scene.run, t_end: end } });
+  const steps = integrate(problem, FIRST.order, FIRST.truncation);
+  return { steps, facts: { end, ...reachOf(gridOf(motionOf(steps), end, end / 1000), length) } };
+}
+
 // The estimated error of the position in m, as a function of the time: it never decreases.
 function errorOf(first, second, end) {
   const { length, swing } = first.problem;
@@ -36,6 +56,13 @@ function errorOf(first, second, end) {
     errors.push(Math.max(errors[i - 1], least + CAUTION * (norm(gaps.slice(0, 3)) + phase)));
   }
   return (time) => errors[Math.min(Math.ceil((SAMPLES * time) / end), SAMPLES)];
+}
+
+// The time up to which the error is at most so large.
+function knownUntil(error, end, allowed) {
+  let count = SAMPLES;
+  while (count > 0 && error((end * count) / SAMPLES) > allowed) count -= 1;
+  return (end * count) / SAMPLES;
 }
 
 // Rows of a motion at each step and at the end: {t, x, y, z, vx, vy, vz}.
@@ -70,21 +97,23 @@ function solve(scene, words, report = () => {}) {
   const grid = gridOf(first.at, end, Math.max(scene.run.grid_step, end / MOST_ROWS));
 
   const { length, swing, unit, constants } = first.problem;
-  const fastest = grid.vx.reduce((most, value, i) => Math.max(most, Math.hypot(value, grid.vy[i], grid.vz[i])), 0);
+  const { amplitude, wide, fastest } = reachOf(grid, length);
   const omega = Math.max(swing, fastest / length);
-  const amplitude = grid.x.reduce((most, value, i) => Math.max(most, Math.hypot(value, grid.y[i])), 0) || length;
   const tilt = tiltOf(constants);
-  const transits = transitsOf(first, second, omega);
+  const until = knownUntil(error, end, words.TOLERANCE * amplitude);
+  const transits = until < end ? null : transitsOf(first, second, omega);
   return {
     scene,
     steps: first.steps,
     at: first.at,
     error,
     facts: {
-      ...swingFacts(first, second, words.REASONS),
+      ...(until < end ? { ...NO_SWING, reason: words.REASONS.UNDECIDED } : swingFacts(first, second, words.REASONS)),
       error: error(end),
+      until,
+      end,
       amplitude,
-      wide: grid.z.some((height) => height > -0.7 * length),
+      wide,
       pull: (Math.hypot(constants[2], constants[3]) / unit ** 2) * length,
       tilt: tilt === null ? null : degrees(tilt),
       hangs: tilt === null ? null : length * Math.sin(tilt),

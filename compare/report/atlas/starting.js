@@ -36,16 +36,10 @@ function startedWorker(kind) {
   };
 }
 
-// The motion that a worker has solved, as a player plays it.
-function playedMotion(numbers, { steps, facts }) {
-  const { length, swing } = problemOf(numbers);
-  const end = numbers.run.t_end;
-  return {
-    at: motionOf({ problem: problemOf(numbers), ...steps }),
-    end,
-    period: Math.min(end, swing ? (2 * Math.PI) / swing : end),
-    amplitude: facts.amplitude,
-    length,
-    wide: facts.wide,
-  };
+// The motion that a worker has solved, up to the end that it says, as a player plays it.
+function playedMotion(numbers, { steps, facts: { end, amplitude, wide } }) {
+  const problem = problemOf({ ...numbers, run: { ...numbers.run, t_end: end } });
+  const { length, swing } = problem;
+  const period = swing ? (2 * Math.PI) / swing : end;
+  return { at: motionOf({ problem, ...steps }), end, period: Math.min(end, period), amplitude, length, wide };
 }

@@ -6,6 +6,7 @@ const CLEAR = 16; // a swing is this many times as wide as the rest position is 
 const LEAST_BEND = 1e-6; // of a highest point: below it the bob circles on a cone
 const HOUR = 3600; // s
 const NEWTON = 40; // rounds at most
+const NO_SWING = { period: null, precession: null, turn: null };
 
 const degrees = (radians) => (radians * 180) / Math.PI;
 
@@ -46,7 +47,7 @@ function apsesOf({ at, falls, problem }) {
 
 const turnsBetween = (apses) => apses.slice(1).map(({ azimuth }, i) => azimuth - apses[i].azimuth);
 
-// {hz, precession in degrees an hour or null, count}, or {reason}; `reason` beside hz says why there is no precession.
+// {hz, precession in degrees an hour or null}, or {reason}; `reason` beside hz says why there is no precession.
 function swingOf(run, reasons) {
   const apses = apsesOf(run);
   if (apses.length < 2 || !apses.every(({ bent }) => bent)) return { reason: reasons.NO_SWING };
@@ -60,7 +61,7 @@ function swingOf(run, reasons) {
   if (offset > 1) return { reason: reasons.LEAN };
 
   const span = apses[apses.length - 1].time - apses[0].time;
-  const swing = { hz: (apses.length - 1) / 2 / span, precession: null, count: apses.length };
+  const swing = { hz: (apses.length - 1) / 2 / span, precession: null };
   const longest = apses.slice(1).reduce((most, { time }, i) => Math.max(most, time - apses[i].time), 0);
   if ((Math.hypot(turnNorth, turnUp) / unit) * longest >= Math.PI / 2) return { ...swing, reason: reasons.FAST };
 
@@ -72,26 +73,32 @@ function swingOf(run, reasons) {
   return { ...swing, precession: (degrees(turn) / span) * HOUR };
 }
 
-// A number and its estimated error from its values in two runs.
-function estimated(value, other) {
-  return { value, error: CAUTION * Math.abs(value - other) + 2 * ULP * Math.abs(value) };
+// The largest difference of what two runs have at each highest point, as a part of the span from the first to the last.
+function shareOf(apses, others, differenceOf) {
+  const span = apses[apses.length - 1].time - apses[0].time;
+  const differences = apses.map((apsis, i) => Math.abs(differenceOf(apsis, others[i])));
+  return (2 * CAUTION * differences.reduce((most, value) => Math.max(most, value), 0)) / span;
 }
 
-// Period in s, precession in degrees an hour and full turn in h, each {value, error} or null, and the reasons for null.
+const turnFrom = (one, other) => Math.sin(one.azimuth - other.azimuth); // a small angle, whatever turns lie between
+const estimated = (value, error) => ({ value, error: error + 2 * ULP * Math.abs(value) });
+
+// Period in s, precession in degrees an hour and full turn in h, each {value, error} or null, and the reason for null. The
+// errors are estimated from the second run.
 function swingFacts(first, second, reasons) {
   const swing = swingOf(first, reasons);
-  const other = swingOf(second, reasons);
-  const nothing = { period: null, precession: null, turn: null };
-  if (swing.hz === undefined) return { ...nothing, reason: swing.reason };
-  if (swing.count !== other.count) return { ...nothing, reason: reasons.UNDECIDED };
+  if (swing.hz === undefined) return { ...NO_SWING, reason: swing.reason };
+  const apses = apsesOf(first);
+  const others = apsesOf(second);
+  if (apses.length !== others.length) return { ...NO_SWING, reason: reasons.UNDECIDED };
 
-  const period = estimated(1 / swing.hz, 1 / other.hz);
-  if (swing.precession === null || other.precession === null) {
-    return { ...nothing, period, reason: swing.reason ?? other.reason };
-  }
-  const precession = estimated(swing.precession, other.precession);
+  const late = shareOf(apses, others, (one, other) => one.time - other.time);
+  const period = estimated(1 / swing.hz, late / swing.hz);
+  if (swing.precession === null) return { ...NO_SWING, period, reason: swing.reason };
+
+  const turned = HOUR * degrees(shareOf(apses, others, turnFrom));
+  const precession = estimated(swing.precession, turned + late * Math.abs(swing.precession));
   const size = Math.abs(precession.value);
-  if (size <= precession.error) return { ...nothing, period, precession, reason: reasons.STILL };
-  const turn = { value: 360 / size, error: ((360 / size) * precession.error) / size };
-  return { period, precession, turn, reason: "" };
+  if (size <= precession.error) return { ...NO_SWING, period, precession, reason: reasons.STILL };
+  return { period, precession, turn: estimated(360 / size, (360 * precession.error) / size ** 2), reason: "" };
 }

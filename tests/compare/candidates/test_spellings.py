@@ -12,7 +12,7 @@ import pytest
 from spellings import Spelling, drawn, of_my_own, of_the_field
 
 from compare.candidates.read import read, read_transits
-from compare.report.atlas.pages import source
+from compare.report.atlas.scripts import source
 from compare.report.atlas.parts import plain, vocabulary
 from reference import InputError
 
