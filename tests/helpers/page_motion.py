@@ -18,7 +18,7 @@ const { fields, words } = asked;
 const told = asked.cases.map(({ texts, times }) => {
   try {
     const begin = performance.now();
-    const solved = solve(numbersOf(texts, fields), words);
+    const solved = solve(sceneOf(texts, fields), words);
     const seconds = (performance.now() - begin) / 1000;
     const transits = solved.truth.transits && [...solved.truth.transits.t];
     return { states: times.map(solved.at), errors: times.map(solved.error), facts: solved.facts, transits, seconds };

@@ -124,11 +124,11 @@ async function solvePendulum() {
   motion = { worker, facts: null };
   const begin = performance.now();
   const { texts } = pendulum;
-  const numbers = numbersOf(texts, fields);
+  const scene = sceneOf(texts, fields);
   say("Computing …");
   const first = await worker.ask("begin", { texts, fields });
   if (number !== started) return;
-  if (!first.refused) showMotion(playedMotion(numbers, first), number);
+  if (!first.refused) showMotion(playedMotion(scene, first), number);
 
   const report = (share) => number === started && say(`Computing: ${Math.round(100 * share)} %`);
   const solved = await worker.ask("solve", { texts, fields, words }, report);
@@ -142,7 +142,7 @@ async function solvePendulum() {
   say(`Computed in ${((performance.now() - begin) / 1000).toPrecision(2)} s.`);
   at("facts").replaceChildren(factsMade(factRows(solved.facts)));
   at("tolerance").placeholder = small(words.TOLERANCE * solved.facts.amplitude);
-  player.show(playedMotion(numbers, solved), player.time());
+  player.show(playedMotion(scene, solved), player.time());
   if (files.length) judgeFiles(files);
 }
 
@@ -165,7 +165,7 @@ function take() {
   const fragment = fragmentOf(pendulum.title, texts, fields);
   if (location.hash.slice(1) !== fragment) history.replaceState(null, "", `#${fragment}`);
   at("toml").textContent = tomlOf(pendulum.title, texts, fields);
-  at("step").placeholder = String(numbersOf(texts, fields).run.grid_step);
+  at("step").placeholder = String(sceneOf(texts, fields).run.grid_step);
   solvePendulum();
 }
 
@@ -219,7 +219,7 @@ async function judgeFiles(chosen) {
   shown.replaceChildren(made("p", { className: "word" }, "Judging …"));
   const result = await worker.ask("judge", { files, tolerance: at("tolerance").value });
   if (worker !== motion.worker) return;
-  const scene = { name: pendulum.title || "this pendulum", end: numbersOf(pendulum.texts, fields).run.t_end, known: knownBy };
+  const scene = { name: pendulum.title || "this pendulum", end: sceneOf(pendulum.texts, fields).run.t_end, known: knownBy };
   showVerdict(shown, files, result, scene, furtherSteps(result));
   if (result.mine) player.drop(result.mine, result.path.max_error_m);
 }
@@ -239,7 +239,7 @@ function save(name, text, type) {
 }
 
 async function saveRows() {
-  const run = numbersOf(pendulum.texts, fields).run;
+  const run = sceneOf(pendulum.texts, fields).run;
   const step = Number(at("step").value || run.grid_step);
   if (!(step > 0 && run.t_end / step <= words.MAX_ROWS)) {
     at("saved").textContent = `Expected a number above 0, and at most ${words.MAX_ROWS} rows.`;

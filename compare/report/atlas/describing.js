@@ -54,7 +54,7 @@ function wrongOf(texts, fields, words) {
   }
   if (Object.keys(wrong).length) return wrong;
 
-  const { pendulum, release, run } = numbersOf(texts, fields);
+  const { pendulum, release, run } = sceneOf(texts, fields);
   if (kindOf(texts) === "position" && Math.hypot(release.x, release.y) >= pendulum.length) {
     const expected = `a point below the suspension: x² + y² less than length² = ${texts["pendulum.length"] ?? "67"}²`;
     return { "release.x": { expected, advice: "To release at or above the horizontal, give angle and azimuth." } };
@@ -66,7 +66,7 @@ function wrongOf(texts, fields, words) {
 }
 
 // The scene as numbers, table by table; what is not given has its default.
-function numbersOf(texts, fields) {
+function sceneOf(texts, fields) {
   const scene = { pendulum: {}, site: {}, release: {}, run: {} };
   for (const { name, choices, default: value } of fields) {
     const text = texts[name] ?? value;

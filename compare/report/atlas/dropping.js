@@ -78,7 +78,7 @@ async function computedMotion() {
     return null;
   }
   document.getElementById("played").textContent = `Computed in this page, its error estimated at ${small(solved.facts.error)} m.`;
-  return playedMotion(numbersOf(texts, fields), solved);
+  return playedMotion(sceneOf(texts, fields), solved);
 }
 
 const player = playerOf(document.getElementById("player"), async () => (page.function ? goldenMotion() : computedMotion()));

@@ -25,7 +25,15 @@ _MOMENTUM = FORMULATIONS["momentum"]
 _CONSTANTS = ("turnNorth", "turnUp", "pullNorth", "pullUp")
 _DRAG = "drag"
 _SITE = ("length", "gravity", "rate", "radius", "flattening", "altitude", "sin", "cos")
-_RELEASE = ("length", "angleSin", "angleCos", "angleRate", "azimuthSin", "azimuthCos", "azimuthRate")
+_RELEASE = (
+    "length",
+    "angleSin",
+    "angleCos",
+    "angleRate",
+    "azimuthSin",
+    "azimuthCos",
+    "azimuthRate",
+)
 _SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
@@ -41,7 +49,9 @@ def emitted() -> str:
         _function("momentumOf", _momentum, ("nx", "ny", "nz", "vx", "vy", "vz", *_CONSTANTS[:2])),
         _function("tangentialForce", _tangential, ("sin", "cos", *_CONSTANTS)),
     ]
-    return "\n".join(["// Emitted from reference/model by emitted.py.", '"use strict";\n', *functions])
+    return "\n".join(
+        ["// Emitted from reference/model by emitted.py.", '"use strict";\n', *functions]
+    )
 
 
 def _constants(numbers: Sequence[Any], drag: Any = 0) -> Constants:
@@ -178,7 +188,9 @@ class _Series:
         if line.operation == "mul":
             if self._series.issuperset(operands):
                 return f"product({operands[0]}, {operands[1]}, k)"
-            return " * ".join(name if name not in self._series else self.at_degree(name) for name in operands)
+            return " * ".join(
+                name if name not in self._series else self.at_degree(name) for name in operands
+            )
         at_degree = [self.at_degree(name) for name in operands]
         if line.operation == "neg":
             return f"-{at_degree[0]}"

@@ -137,7 +137,8 @@ def _fieldset(table: str) -> Html:
 _KINDS = """<label class="line"><span>given by</span> <select id="kind">
 <option value="position">x and y</option><option value="angles">angle and azimuth</option></select></label>
 <label class="line" id="direction-line"><span>direction</span> <select id="direction">
-<option value="azimuth">azimuth: from east to north</option><option value="bearing">bearing: from north to east, as a compass</option>
+<option value="azimuth">azimuth: from east to north</option>
+<option value="bearing">bearing: from north to east, as a compass</option>
 </select></label>"""
 
 
@@ -147,7 +148,7 @@ def _input(field: Mapping[str, Any]) -> Html:
     if field["choices"]:
         return _choice(name, meaning)
     label = _LABELS.get(name, name.partition(".")[2])
-    unit = f" <span class=\"unit\">{text(field['unit'])}</span>" if field["unit"] else ""
+    unit = f' <span class="unit">{text(field["unit"])}</span>' if field["unit"] else ""
     return Html(
         f'<div class="field"><label for="{name}">{text(label)}{unit}</label>\n'
         f'<input id="{name}" inputmode="text" autocomplete="off" spellcheck="false" '
@@ -160,7 +161,9 @@ def _input(field: Mapping[str, Any]) -> Html:
 def _choice(name: str, meaning: str) -> Html:
     """Return radio buttons; the meaning has a part for each choice: "one: …; other: …"."""
     buttons = "".join(_button(name, part) for part in meaning.split("; "))
-    return Html(f'<div class="field meanings" role="radiogroup" id="{name}" aria-label="what g means">{buttons}</div>')
+    return Html(
+        f'<div class="field meanings" role="radiogroup" id="{name}" aria-label="what g means">{buttons}</div>'
+    )
 
 
 def _button(name: str, part: str) -> str:
@@ -173,6 +176,8 @@ def _button(name: str, part: str) -> str:
 
 def options(scenes: Iterable[Mapping[str, Any]]) -> Html:
     """Return the scenes as options of a choice."""
-    return Html(
-        "\n".join(f'<option value="{text(scene["id"])}">{text(scene["id"].replace("_", " "))}</option>' for scene in scenes)
+    names = [scene["id"] for scene in scenes]
+    lines = (
+        f'<option value="{text(name)}">{text(name.replace("_", " "))}</option>' for name in names
     )
+    return Html("\n".join(lines))

@@ -1,4 +1,4 @@
-"""The atlas of a folder: the page for any pendulum, one over all scenes, and one for each, which judges a dropped file."""
+"""The atlas of a folder: pages for any pendulum, over all scenes, and for each scene; they judge a dropped file."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ if (typeof WorkerGlobalScope !== "undefined") {
 
   function begun({ texts, fields }) {
     try {
-      const { steps, facts } = firstSwings(numbersOf(texts, fields));
+      const { steps, facts } = firstSwings(sceneOf(texts, fields));
       return { facts, steps: sent(steps) };
     } catch (error) {
       if (!(error instanceof Unsolvable)) throw error;
@@ -19,7 +19,7 @@ if (typeof WorkerGlobalScope !== "undefined") {
 
   function solved({ texts, fields, words }, report) {
     try {
-      solution = solve(numbersOf(texts, fields), words, report);
+      solution = solve(sceneOf(texts, fields), words, report);
     } catch (error) {
       if (!(error instanceof Unsolvable)) throw error;
       return { refused: error.message };

@@ -37,9 +37,7 @@ WORKERS = {
 
 def data(name: str, document: Mapping[str, Any]) -> Html:
     """Return an element with data for the scripts."""
-    content = json.dumps(
-        document, separators=(",", ":"), ensure_ascii=False, default=parts.plain
-    )
+    content = json.dumps(document, separators=(",", ":"), ensure_ascii=False, default=parts.plain)
     content = content.replace("<", "\\u003c")
     return Html(f'<script type="application/json" id="{name}">{content}</script>\n')
 

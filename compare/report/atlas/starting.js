@@ -37,8 +37,8 @@ function startedWorker(kind) {
 }
 
 // The motion that a worker has solved, up to the end that it says, as a player plays it.
-function playedMotion(numbers, { steps, facts: { end, amplitude, wide } }) {
-  const problem = problemOf({ ...numbers, run: { ...numbers.run, t_end: end } });
+function playedMotion(scene, { steps, facts: { end, amplitude, wide } }) {
+  const problem = problemOf({ ...scene, run: { ...scene.run, t_end: end } });
   const { length, swing } = problem;
   const period = swing ? (2 * Math.PI) / swing : end;
   return { at: motionOf({ problem, ...steps }), end, period: Math.min(end, period), amplitude, length, wide };

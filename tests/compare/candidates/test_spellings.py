@@ -12,8 +12,8 @@ import pytest
 from spellings import Spelling, drawn, of_my_own, of_the_field
 
 from compare.candidates.read import read, read_transits
-from compare.report.atlas.scripts import source
 from compare.report.atlas.parts import plain, vocabulary
+from compare.report.atlas.scripts import source
 from reference import InputError
 
 FIELD, OWN = of_the_field(), of_my_own()

@@ -15,8 +15,8 @@ from compare import judge
 from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
 from compare.diagnosis.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
-from compare.report.atlas.scripts import source
 from compare.report.atlas.parts import golden_function, page_data, plain, vocabulary
+from compare.report.atlas.scripts import source
 from reference import InputError
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")

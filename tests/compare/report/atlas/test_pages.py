@@ -94,7 +94,10 @@ def test_pages_load_nothing_stay_small_and_have_each_id_once(atlas):
     for path in atlas.glob("*.html"):
         text = path.read_text()
         policy = re.search(r'Content-Security-Policy" content="(.*?)"', text)[1]
-        assert "default-src 'none'" in policy and "'unsafe-inline'" not in policy.partition("script-src")[2]
+        assert (
+            "default-src 'none'" in policy
+            and "'unsafe-inline'" not in policy.partition("script-src")[2]
+        )
         assert not re.search(
             r"<(?:link|img|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text
         )
