@@ -1,6 +1,7 @@
 // Judge a trajectory as `foucault score` does (compare/score); pure functions, without the page. Rows are judged at any
 // time where the dataset has a golden function, else at the golden times. `truth` is what parts.py embeds: columns as
-// doubles in base64, bounds, scales and words. Needs evaluator (docs/readers/function.mjs) and reading.js.
+// doubles in base64, bounds, scales and words. Needs evaluator (docs/readers/function.mjs), reading.js and
+// observing.js.
 "use strict";
 
 const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a time at which the truth is known is judged there
@@ -164,8 +165,7 @@ function judge(given, truth, tolerance = null) {
     const apart = columns.t.length - judged.rows.length;
     if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
     if (verdict.path.max_error_m > allowed) {
-      const mistakes = suspicions(columns, judged, errors, truth);
-      verdict.notes.push(...(mistakes.length ? mistakes : unitOfTime(columns, truth)));
+      verdict.notes.push(...mistakesIn(columns, judged, errors, truth, allowed));
     }
   }
   if (times && truth.transits) {
@@ -180,6 +180,14 @@ function judge(given, truth, tolerance = null) {
   const right = !path || path.max_error_m <= allowed;
   const timely = !transits || !(transits.missed.length || transits.extra.length || transits.max_conditioned_error_m > allowed);
   return { ...verdict, verdict: right && timely ? "agrees" : "disagrees" };
+}
+
+// What explains the error, the plainest first.
+function mistakesIn(columns, judged, errors, truth, allowed) {
+  const plain = suspicions(columns, judged, errors, truth);
+  if (plain.length) return plain;
+  const unit = unitOfTime(columns, truth);
+  return unit.length ? unit : observed(columns, judged, truth, allowed);
 }
 
 function pathVerdict(columns, { rows, golden }, errors, truth, { allowed, amplitude, bound }) {
@@ -222,11 +230,12 @@ function suspicions(columns, { rows, golden }, errors, truth) {
       return explained([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], most(rows.map(left)));
     }
   }
-  const { vx, vy } = golden;
+  const { vx, vy, vz } = golden;
   const { x: ex, y: ey } = errors.components;
   const square = vx.reduce((sum, u, i) => sum + u ** 2 + vy[i] ** 2, 0);
   const late = -vx.reduce((sum, u, i) => sum + u * ex[i] + vy[i] * ey[i], 0) / square;
-  const rest = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i])));
+  const ez = errors.components.z ?? vx.map(() => 0);
+  const rest = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], ez[i] + late * vz[i])));
   return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
 }
 

@@ -18,10 +18,11 @@ from .emitted import emitted
 EMITTED = "emitted.js"
 _EVALUATOR = "function.mjs"
 # what the two workers are made of: of a scene's golden data, and of the motion that a page computes
-_JUDGING = ("function.mjs", "reading.js", "judging.js", "answering.js")
+_JUDGING = ("function.mjs", "reading.js", "judging.js", "observing.js", "answering.js")
 _SOLVING = (
     "reading.js",
     "judging.js",
+    "observing.js",
     "answering.js",
     EMITTED,
     "integrating.js",

@@ -1,0 +1,260 @@
+// The observation: how a right motion became the columns of a file, as compare/diagnosis/observed.py. Maps are fitted to the
+// truth; one that leaves more than is allowed is not named. Needs judging.js, and its words and thresholds (parts.py).
+"use strict";
+
+const LATE_ROWS = [1, -1, 2, -2]; // by which a column may be late
+const MAP_DIGITS = 10; // of a fitted number at most
+const FIRST_ROWS = 16; // to which a clock is fitted before it is to more
+const CLOCK_STEPS = 6;
+const MOST_DECIMALS = 8; // that count as rounded
+const HEIGHT_DIGITS = 6; // of a height
+
+const mean = (values) => values.reduce((total, value) => total + value, 0) / values.length;
+const rootMeanSquare = (values) => Math.sqrt(values.reduce((total, value) => total + value ** 2, 0) / values.length);
+const farthest = (values) => values.reduce((best, value) => Math.max(best, Math.abs(value)), 0);
+const lessThan = (values, others) => values.map((value, i) => value - others[i]);
+const inProduct = (values, others) => values.reduce((total, value, i) => total + value * others[i], 0);
+
+// A number as people write it: 1.5, 1e-7.
+function shortNumber(value, digits) {
+  return String(Number(value.toPrecision(digits))).replace(/e([+-])(\d)$/, "e$10$2");
+}
+
+// The shortest decimal within a doubt: {text, digits}.
+function shortestDecimal(value, doubt) {
+  for (let digits = 1; digits < 12; digits += 1) {
+    if (Math.abs(Number(value.toPrecision(digits)) - value) <= doubt) return { value: Number(value.toPrecision(digits)), digits };
+  }
+  return { value: Number(value.toPrecision(12)), digits: 12 };
+}
+
+// Whether somebody may have typed a number: its shortest decimal within a doubt is no accident.
+function hasFewDigits(value, uncertainty, { CHANCE, MOST_DIGITS }) {
+  const doubt = Math.max(uncertainty, 2 ** -50 * Math.abs(value));
+  if (Math.abs(value) <= doubt) return true;
+  const { digits } = shortestDecimal(value, doubt);
+  const unit = 10 ** (Math.floor(Math.log10(Math.abs(value))) - digits + 1);
+  return digits <= MOST_DIGITS && 2 * doubt < CHANCE * unit;
+}
+
+// A fitted number: its text, and its price, which is 0 if somebody may have typed it.
+function fittedNumber(value, uncertainty, words) {
+  const text = shortNumber(shortestDecimal(value, uncertainty).value, MAP_DIGITS);
+  return { text, price: hasFewDigits(value, uncertainty, words) ? 0 : 1 };
+}
+
+// The number of decimals that x and y are printed with; null if they are more than programs round to.
+function decimalsOf(columns) {
+  const isWhole = (value) => Math.abs(value - Math.round(value)) <= 1e-9 * Math.max(1, Math.abs(value));
+  const rounds = (values, size) => values.every((value) => isWhole(value * size));
+  const names = POSITION.filter((name) => name in columns);
+  for (let decimals = 0; decimals <= MOST_DECIMALS; decimals += 1) {
+    if (names.every((name) => rounds(columns[name], 10 ** decimals))) return decimals;
+  }
+  return null;
+}
+
+// What is explained: columns of a file and of the truth at its rows, and how closely.
+function observedCase(columns, { rows, golden }, truth, allowed) {
+  const names = POSITION.filter((name) => name in columns);
+  const decimals = decimalsOf(columns);
+  const noise = decimals === null ? 0 : 0.5 * 10 ** -decimals; // of the rounding of its numbers, in m
+  return {
+    names,
+    decimals,
+    noise,
+    times: rows.map((row) => columns.t[row]),
+    printed: Object.fromEntries(names.map((name) => [name, rows.map((row) => columns[name][row])])),
+    golden,
+    length: truth.length_m,
+    allowed: Math.max(allowed, truth.words.ROUNDED * noise),
+    resolution: Math.max(noise, truth.words.FINEST * allowed),
+    words: truth.words,
+  };
+}
+
+const uncertaintyOf = (residuals, { resolution }) => Math.max(rootMeanSquare(residuals), resolution);
+
+function isEven(times) {
+  const steps = times.slice(1).map((time, i) => time - times[i]);
+  const least = steps.reduce((best, step) => Math.min(best, step), Infinity);
+  return farthest(steps) - least <= 1e-6 * steps[0];
+}
+
+// What is said of heights that are all too high by as much.
+function heightMoved(shift, { length, allowed }) {
+  if (Math.abs(shift - length) <= allowed) return "counts z from the lowest point";
+  return `has z ${shortNumber(Math.abs(shift), HEIGHT_DIGITS)} m too ${shift > 0 ? "high" : "low"} in every row`;
+}
+
+// The maps of one column: {text, columns: {name: values}, price}.
+
+function columnMaps(found, name) {
+  const { names, printed: all, golden, resolution, words, times } = found;
+  const printed = all[name];
+  const right = golden[name];
+  const map = (text, values, price = 1) => ({ text, columns: { [name]: values }, price });
+  const maps = [];
+
+  const level = mean(printed);
+  if (farthest(printed.map((value) => value - printed[0])) <= resolution) {
+    maps.push(map(`prints ${name} as a constant, ${shortNumber(level, MAP_DIGITS)}`, printed.map(() => level)));
+  }
+  for (const other of names.filter((word) => word !== name)) {
+    maps.push(map(`prints ${other} in its column of ${name}`, golden[other]));
+    maps.push(map(`prints −${other} in its column of ${name}`, golden[other].map((value) => -value)));
+  }
+  const mirrored = name === "z" ? "counts z downwards" : `prints −${name} in its column of ${name}`;
+  maps.push(map(mirrored, right.map((value) => -value)));
+
+  const square = inProduct(right, right);
+  const factor = square ? inProduct(right, printed) / square : 0;
+  const size = rootMeanSquare(right);
+  if (Math.min(Math.abs(factor), Math.abs(factor + 1)) * size > words.RIVAL * resolution) {
+    const scaled = right.map((value) => factor * value);
+    const number = fittedNumber(factor, uncertaintyOf(lessThan(printed, scaled), found) / size, words);
+    maps.push(map(`prints ${name} times ${number.text}`, scaled, 1 + number.price));
+  }
+
+  const shift = mean(lessThan(printed, right));
+  const moved = right.map((value) => value + shift);
+  const number = fittedNumber(shift, uncertaintyOf(lessThan(printed, moved), found), words);
+  const added = name === "z" ? heightMoved(shift, found) : `prints ${name} with ${number.text} m added to it`;
+  maps.push(map(added, moved, 1 + number.price));
+
+  for (const count of isEven(times) ? LATE_ROWS : []) {
+    const late = printed.map((value, i) => right[i - count] ?? value);
+    const said = Math.abs(count) === 1 ? "one row" : `${Math.abs(count)} rows`;
+    if (printed.length > Math.abs(count)) maps.push(map(`prints ${name} ${said} ${count > 0 ? "late" : "early"}`, late));
+  }
+  return maps;
+}
+
+// The maps of x and y together: scaled, turned, moved.
+
+function planeMaps(found) {
+  const { printed, golden, words } = found;
+  const [x, y] = [golden.x, golden.y];
+  const square = inProduct(x, x) + inProduct(y, y);
+  const along = (inProduct(x, printed.x) + inProduct(y, printed.y)) / square;
+  const across = (inProduct(x, printed.y) - inProduct(y, printed.x)) / square;
+  const size = Math.sqrt(square / x.length);
+
+  const made = (a, b, c = 0, d = 0) => ({
+    x: x.map((value, i) => a * value - b * y[i] + c),
+    y: y.map((value, i) => a * value + b * x[i] + d),
+  });
+  const residual = (map) => {
+    const squares = lessThan(printed.x, map.x).map((value, i) => Math.hypot(value, printed.y[i] - map.y[i]));
+    return uncertaintyOf(squares, found);
+  };
+  const inDegrees = 180 / Math.PI;
+  const maps = [];
+
+  const scaled = made(along, 0);
+  const scale = fittedNumber(along, residual(scaled) / size, words);
+  maps.push({ text: `prints x and y times ${scale.text}`, columns: scaled, price: 1 + scale.price });
+
+  const turn = Math.atan2(across, along);
+  const turned = made(Math.cos(turn), Math.sin(turn));
+  const doubt = residual(turned) / size;
+  const radians = fittedNumber(turn, doubt, words);
+  const degrees_ = fittedNumber(turn * inDegrees, doubt * inDegrees, words);
+  const angle = radians.price ? `${degrees_.text} degrees` : `${radians.text} rad`;
+  maps.push({ text: `prints x and y turned by ${angle}, anticlockwise`, columns: turned, price: 1 + radians.price * degrees_.price });
+
+  const [east, north] = ["x", "y"].map((name) => mean(lessThan(printed[name], golden[name])));
+  const moved = made(1, 0, east, north);
+  const [right, up] = [east, north].map((value) => fittedNumber(value, residual(moved), words));
+  maps.push({ text: `prints x and y with ${right.text} m and ${up.text} m added to them`, columns: moved, price: 2 + right.price + up.price });
+
+  const both = made(along, across);
+  const close = residual(both) / size;
+  const length = fittedNumber(Math.hypot(along, across), close, words);
+  const round = fittedNumber(turn * inDegrees, close * inDegrees, words);
+  const text = `prints x and y times ${length.text} and turned by ${round.text} degrees, anticlockwise`;
+  maps.push({ text, columns: both, price: 2 + length.price + round.price });
+  return maps;
+}
+
+const residualsOf = ({ printed }, { columns }) => Object.keys(columns).flatMap((name) => lessThan(printed[name], columns[name]));
+
+// The cheapest of the maps that make their columns: several if they fit as well.
+function bestMaps(found, maps) {
+  const { resolution, allowed, words } = found;
+  const left = maps.map((map) => residualsOf(found, map));
+  const sizes = left.map((residuals) => Math.max(rootMeanSquare(residuals), resolution));
+  const most = words.RIVAL * sizes.reduce((least, size) => Math.min(least, size), Infinity);
+  const near = maps.filter((_, i) => sizes[i] <= most && farthest(left[i]) <= allowed);
+  const price = near.reduce((least, map) => Math.min(least, map.price), Infinity);
+  return near.filter((map) => map.price === price);
+}
+
+const priceOf = (groups) => groups.reduce((total, maps) => total + (maps.length ? maps[0].price : Infinity), 0);
+
+// What a right program's columns were mapped by: {texts, rest in m}; null if no map made all wrong columns.
+function observation(found, truth) {
+  const { names, printed, golden, allowed, words, times } = found;
+  const wrong = names.filter((name) => farthest(lessThan(printed[name], golden[name])) > allowed);
+  if (!wrong.length || times[times.length - 1] * truth.omega < 2 * Math.PI) return null;
+
+  const separate = wrong.map((name) => bestMaps(found, columnMaps(found, name)));
+  let groups = separate;
+  if (wrong.includes("x") && wrong.includes("y")) {
+    const others = separate.filter((_, i) => wrong[i] === "z");
+    const together = [bestMaps(found, planeMaps(found)), ...others];
+    if (priceOf(together) < priceOf(separate)) groups = together;
+  }
+  const price = priceOf(groups);
+  if (!Number.isFinite(price) || words.ROWS_A_NUMBER * price > times.length) return null;
+  if (groups.some((maps) => maps.length > words.ALTERNATIVES)) return null;
+
+  const texts = groups.map((maps) => (maps.length > 1 ? "either " : "") + maps.map((map) => map.text).join(", or "));
+  const mended = Object.assign({}, golden, ...groups.map(([map]) => map.columns));
+  const rest = names.map((name) => lessThan(printed[name], mended[name]));
+  return { texts, rest: farthest(times.map((_, i) => Math.hypot(...rest.map((values) => values[i])))) };
+}
+
+// A clock that runs faster or slower than its motion, fitted to more and more rows: {text, rest}, or null.
+function clockRate({ names, times, printed, allowed, words }, truth) {
+  if (!truth.at || times.length < FIRST_ROWS) return null;
+  let rate = 1; // of the motion, over that of the clock
+
+  const statesAt = (count) => times.slice(0, count).map((time) => truth.at(Math.min(time * rate, truth.end)));
+  const places = names.map((name) => POSITION.indexOf(name));
+  const missed = (state, row) => names.map((name, k) => printed[name][row] - state[places[k]]);
+  for (let count = FIRST_ROWS; ; count = Math.min(2 * count, times.length)) {
+    for (let step = 0; step < CLOCK_STEPS; step += 1) {
+      let [above, below] = [0, 0];
+      statesAt(count).forEach((state, row) => {
+        missed(state, row).forEach((error, k) => {
+          const slope = times[row] * state[3 + places[k]];
+          above += slope * error;
+          below += slope * slope;
+        });
+      });
+      rate += below ? above / below : 0;
+    }
+    if (!(rate > 0.5 && rate < 2)) return null;
+    if (count === times.length) break;
+  }
+
+  const states = statesAt(times.length);
+  const rest = farthest(states.map((state, row) => Math.hypot(...missed(state, row))));
+  const speed = rootMeanSquare(states.map((state, row) => times[row] * Math.hypot(state[3], state[4])));
+  if (rest > allowed || !speed) return null;
+  const value = fittedNumber(1 / rate, Math.max(rest, words.FINEST * allowed) / speed, words);
+  return { text: words.CLOCK_SAID.replace("{value}", value.text), rest };
+}
+
+// The sentences of an observation: none if the page finds none.
+function observed(columns, judged, truth, allowed) {
+  const found = observedCase(columns, judged, truth, allowed);
+  const left = (rest) => `put right, ${rest.toPrecision(2)} m are left.`;
+  const unjudged = `no more than ${shortNumber(found.noise, 1)} of its unit can be judged`;
+  const rounded = found.noise > allowed ? [`Your file prints ${found.decimals} decimals: ${unjudged}.`] : [];
+  const maps = observation(found, truth);
+  if (maps) return [...rounded, `Your file ${maps.texts.join(", and it ")}: ${left(maps.rest)}`];
+  const clock = clockRate(found, truth);
+  return clock ? [...rounded, `It seems that your program ${clock.text}: ${left(clock.rest)}`] : rounded;
+}
