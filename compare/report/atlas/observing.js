@@ -6,6 +6,7 @@ const LATE_ROWS = [1, -1, 2, -2]; // by which a column may be late
 const MAP_DIGITS = 10; // of a fitted number at most
 const FIRST_ROWS = 16; // to which a clock is fitted before it is to more
 const CLOCK_STEPS = 6;
+const FEWEST_VALUES = 20; // of fewer numbers nobody can tell how they are rounded
 const MOST_DECIMALS = 8; // that count as rounded
 const HEIGHT_DIGITS = 6; // of a height
 
@@ -48,6 +49,7 @@ function decimalsOf(columns) {
   const isWhole = (value) => Math.abs(value - Math.round(value)) <= 1e-9 * Math.max(1, Math.abs(value));
   const rounds = (values, size) => values.every((value) => isWhole(value * size));
   const names = POSITION.filter((name) => name in columns);
+  if (names.length * columns.t.length < FEWEST_VALUES) return null;
   for (let decimals = 0; decimals <= MOST_DECIMALS; decimals += 1) {
     if (names.every((name) => rounds(columns[name], 10 ** decimals))) return decimals;
   }

@@ -1,0 +1,127 @@
+"""The page for any pendulum judges as the command does, and names an observation in the same words (Node.js)."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+from dropped import csv, trajectories
+from page_motion import code, node
+
+import reference
+from compare import judge
+from compare.report.atlas.form import fields, form_words, texts_of
+from compare.report.atlas.parts import vocabulary
+from reference import load_scene
+
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
+
+_ANSWER = """
+const { texts, files, fields, words } = JSON.parse(require("fs").readFileSync(0, "utf8"));
+const solution = solve(sceneOf(texts, fields), words);
+const told = files.map((text) => {
+  const { points, mine, ...verdict } = answerBy(solution, [{ name: "mine.csv", text }], "");
+  return verdict;
+});
+console.log(JSON.stringify(told));
+"""
+
+
+def answers(scene, files):
+    """Return what the page answers to each file."""
+    words = vocabulary() | form_words()
+    document = {"texts": texts_of(scene), "files": [*files], "fields": fields(), "words": words}
+    return node(code() + _ANSWER, document)
+
+
+def test_files_are_judged_as_by_score(size, tmp_path):
+    """Right and wrong files of Paris in all spellings, by the page's own motion and by the golden data."""
+    golden = reference.load("paris.binary64")
+    texts = trajectories(golden)
+    texts = {
+        name: texts[name] for name in size(("right", "wrong", "millimetres_west", "fortran"), texts)
+    }
+    for (name, text), mine in zip(
+        texts.items(), answers(golden.scene, texts.values()), strict=True
+    ):
+        path = tmp_path / "mine.csv"
+        path.write_text(text)
+        score = judge(path, "paris", explain=False)
+        assert mine["verdict"] == score.verdict, name
+        assert mine["path"]["max_error_m"] == pytest.approx(score.errors.max_m, rel=1e-3, abs=2e-11)
+        assert mine["amplitude_m"] == pytest.approx(score.errors.amplitude_m, rel=1e-9), name
+        if score.verdict == "disagrees" and score.errors.max_m > 1e-6:
+            assert mine["path"]["worst"]["component"] == score.worst[1], name
+
+
+SCENE = load_scene("museum", ["run.t_end=120", "run.grid_step=0.5", "inputs=binary64"])
+
+
+@pytest.fixture(scope="module")
+def motion():
+    """Rows of the museum's pendulum each half second, as a right program prints them."""
+    solution = reference.solve(SCENE.with_values({"run.digits": 18, "run.level": "computed"}))
+    return {name: np.array(getattr(solution, name)) for name in ("t", "x", "y", "z")}
+
+
+def turned(x, y, degrees):
+    angle = np.radians(degrees)
+    return np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
+
+
+# what a program makes of t, x, y, z
+MAPS = {
+    "x_copied": lambda t, x, y, z: (t, x, x, z),
+    "plane_times": lambda t, x, y, z: (t, 0.5 * x, 0.5 * y, None),
+    "heights": lambda t, x, y, z: (t, x, y, z + 3),
+    "y_mirrored_and_moved": lambda t, x, y, z: (t, x + 0.25, y, None),
+    "plane_turned": lambda t, x, y, z: (t, *turned(x, y, 30), None),
+    "plane_moved": lambda t, x, y, z: (t, x + 0.5, y + 0.25, None),
+    "times_and_turned": lambda t, x, y, z: (t, *turned(2 * x, 2 * y, 45), None),
+    "y_times": lambda t, x, y, z: (t, x, 1.25 * y, None),
+    "y_late": lambda t, x, y, z: (t, x, np.concatenate([y[:1], y[:-1]]), None),
+    "pixels": lambda t, x, y, z: (t, np.round(400 * x), np.round(400 * y), None),
+    "z_down": lambda t, x, y, z: (t, x, y, -z),
+    "lowest": lambda t, x, y, z: (t, x, y, z + 20),
+}
+
+
+def file_of(columns):
+    names = [name for name, column in zip("txyz", columns, strict=True) if column is not None]
+    return csv(",".join(names), *(column for column in columns if column is not None))
+
+
+def test_an_observation_has_the_words_of_the_package(motion, size, tmp_path):
+    names = size(("x_copied", "plane_times", "heights"), MAPS)
+    files = {name: file_of(MAPS[name](*(motion[column] for column in "txyz"))) for name in names}
+    for (name, text), mine in zip(files.items(), answers(SCENE, files.values()), strict=True):
+        path = tmp_path / "mine.csv"
+        path.write_text(text)
+        explanation = judge(path, SCENE).explanation
+        assert mine["verdict"] == "disagrees"
+        said = " ".join(mine["notes"])
+        assert explanation.conventions and not explanation.causes, name
+        for convention in explanation.conventions:
+            assert convention.text in said, (name, mine["notes"])
+
+
+def test_a_clock_has_the_words_of_the_package(motion, tmp_path):
+    t, x, y = (motion[name] for name in "txy")
+    text = csv("t,x,y", (1.0001 * t)[:-1], x[:-1], y[:-1])
+    path = tmp_path / "mine.csv"
+    path.write_text(text)
+    (cause,) = judge(path, SCENE).explanation.causes
+    (mine,) = answers(SCENE, [text])
+    assert cause.text in mine["notes"][-1]
+
+
+def test_a_wrong_program_is_no_observation(motion):
+    """Another length, and one without rotation: no map of columns makes them; the page leaves them to the command."""
+    wrong = []
+    for change in ("pendulum.length=20.5", "site.rotation_rate=0", "site.latitude=-50"):
+        settings = {"run.digits": 18, "run.level": "computed"}
+        solution = reference.solve(SCENE.with_values([change]).with_values(settings))
+        wrong.append(csv("t,x,y", *(np.array(getattr(solution, name)) for name in "txy")))
+    for mine in answers(SCENE, wrong):
+        assert mine["verdict"] == "disagrees" and mine["notes"] == []

@@ -1,0 +1,168 @@
+"""The page for any pendulum: its weight and policy, and what a browser makes of links, typed fields and files."""
+
+from __future__ import annotations
+
+import json
+import re
+from urllib.parse import urlencode
+
+import pytest
+from browsing import CHROMIUM, in_browser
+
+from compare.report.atlas.pendulum_page import pendulum_page
+
+browser = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+
+MOST_BYTES = 300_000
+EVIL = "<img src=x onerror=hacked=1>"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "index.html"
+    path.write_text(pendulum_page("scenes.html"))
+    return path
+
+
+def test_the_page_is_small_loads_nothing_and_runs_only_its_own_scripts(page):
+    text = page.read_text()
+    assert len(text.encode()) <= MOST_BYTES
+    policy = re.search(r'Content-Security-Policy" content="(.*?)"', text)[1]
+    assert (
+        "default-src 'none'" in policy and "unsafe" not in policy and "worker-src blob:" in policy
+    )
+    assert not re.search(
+        r"<(?:link|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text
+    )
+    assert "innerHTML" not in text and " style=" not in text and not re.search(r" on[a-z]+=", text)
+    scripts = re.findall(r"<script class=", text)
+    assert policy.count("'sha256-") == len(scripts) + 1  # and the style
+
+
+def test_every_field_has_a_label_a_meaning_and_a_place_for_its_mistake(page):
+    text = page.read_text()
+    names = re.findall(r'<input id="([a-z_]+[.][a-z_]+)"', text)
+    assert len(names) == 18
+    for name in names:
+        assert f'<label for="{name}">' in text
+        assert f'aria-describedby="{name}.meaning {name}.wrong"' in text
+        assert f'id="{name}.meaning"' in text and f'id="{name}.wrong"' in text
+    ids = re.findall(r' id="([^"]+)"', text.partition("<script")[0])
+    assert len(ids) == len(set(ids))
+
+
+WALK = r"""
+<script>
+(async () => {
+  const told = {};
+  const violations = [];
+  addEventListener("securitypolicyviolation", (event) => violations.push(event.violatedDirective));
+  const pause = () => new Promise((done) => setTimeout(done, 5));
+  const until = async (holds) => { while (!holds()) await pause(); };
+  const computed = () => at("state").textContent.startsWith("Computed in");
+  const verdict = async () => {
+    await until(() => shown.childNodes.length && shown.className !== "working");
+    return [shown.className, shown.innerText];
+  };
+  const type = async (id, text) => {
+    at("state").textContent = "";
+    at(id).value = text;
+    at(id).dispatchEvent(new Event("input", { bubbles: true }));
+    await until(() => at("state").textContent !== "" && (computed() || /wrong/.test(at("state").textContent)));
+  };
+  const paste = async (text) => {
+    shown.replaceChildren();
+    at("pasted").value = text;
+    at("judge").click();
+    return verdict();
+  };
+
+  await until(computed);
+  told.title = at("title").value;
+  told.toml = at("toml").textContent;
+  told.facts = at("facts").innerText;
+  told.fits = document.documentElement.scrollWidth <= innerWidth;
+
+  await type("pendulum.length", "-1");
+  told.wrong = at("pendulum.length.wrong").textContent;
+  told.invalid = at("pendulum.length").getAttribute("aria-invalid");
+  await type("pendulum.length", "10");
+  told.right = at("pendulum.length.wrong").textContent;
+  told.link = location.hash;
+
+  const motion = await player.ready() && rowsNow();
+  told.agrees = await paste(motion("t,x,y", (x, y) => [x, y]));
+  told.swapped = await paste(motion("t,x,y", (x, y) => [y, x]));
+  told.wrongRows = await paste(motion("t,x,y", (x, y, t) => [x * Math.cos(t / 900), y]));
+  told.header = await paste(`t,x,%s\n0,1,2\n`);
+  const data = new DataTransfer();
+  data.items.add(new File([motion("t,x,y", (x, y) => [x, 2 * y])], "%s.csv"));
+  shown.replaceChildren();
+  at("drop").dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+  told.dropped = await verdict();
+  told.images = document.querySelectorAll("main img").length;
+  told.fitsAfter = document.documentElement.scrollWidth <= innerWidth;
+
+  at("preset").value = "hard";
+  at("preset").dispatchEvent(new Event("change", { bubbles: true }));
+  at("state").textContent = "";
+  await until(computed);
+  told.preset = [at("about").textContent, at("release.angle").value, location.hash];
+  at("direction").value = "bearing";
+  at("direction").dispatchEvent(new Event("change", { bubbles: true }));
+  told.bearing = [at("release.azimuth").value, textsOfForm()["release.azimuth"]];
+
+  const all = { ...told, hacked: typeof hacked, violations };
+  document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
+})();
+
+// Rows of the motion that is shown, through a function of x, y and t.
+function rowsNow() {
+  const texts = textsOfForm();
+  const at_ = motionOf(integrate(problemOf(sceneOf(texts, fields)), 20, 2 ** -50));
+  return (header, map) => {
+    const lines = Array.from({ length: 121 }, (_, i) => {
+      const [x, y] = at_(i / 2);
+      return [i / 2, ...map(x, y, i / 2)].join(",");
+    });
+    return [header, ...lines, ""].join("\n");
+  };
+}
+</script></body>"""
+
+
+@browser
+def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
+    """From a link to the mistake, on a screen as wide as a phone's; nothing of a stranger's text becomes HTML."""
+    asked = {
+        "title": EVIL,
+        "release.x": "0.3",
+        "release.y": "0.4",
+        "run.t_end": "60",
+        "run.grid_step": "1",
+        "site.gravity_is": "effective",
+        "evil": EVIL,
+    }
+    script = WALK.replace("%s", EVIL)
+    told = in_browser(page, script, tmp_path, fragment=f"#{urlencode(asked)}")
+    assert told["hacked"] == "undefined" and told["images"] == 0 and told["violations"] == []
+    assert told["fits"] and told["fitsAfter"]
+    assert told["title"] == EVIL and f"title = {json.dumps(EVIL)}" in told["toml"]
+    assert "precession" in told["facts"] and "estimated" in told["facts"]
+    assert told["wrong"] == "Expected a number above 0." and told["invalid"] == "true"
+    assert (
+        told["right"] == "" and "pendulum.length=10" in told["link"] and "evil" not in told["link"]
+    )
+
+    assert told["agrees"][0] == "agrees" and "your rows agrees" in told["agrees"][1]
+    assert told["swapped"][0] == "disagrees"
+    assert "Your file writes north as x and east as y: put right" in told["swapped"][1]
+    assert told["wrongRows"][0] == "disagrees"
+    assert "foucault score pendulum.toml FILE" in told["wrongRows"][1]
+    assert told["header"][0] == "refused" and EVIL in told["header"][1]
+    assert f"{EVIL}.csv disagrees with {EVIL}" in told["dropped"][1]
+    assert "Your file prints y times 2" in told["dropped"][1]
+
+    assert told["preset"][0].startswith("80 degrees") and told["preset"][1] == "80"
+    assert "release.angle=80" in told["preset"][2]
+    assert told["bearing"] == ["60", "30"]
