@@ -75,6 +75,8 @@ LANGUAGES = {
     STUDIES: {"sh"},
     API: {"{eval-rst}", "pycon", "python"},
     "docs/commands.md": {"text"},
+    # by test_paste.py; the console's line is of files that the page has no more than the names of
+    "docs/paste.md": {"javascript", "python", "octave", "text", "console"},
     "docs/cite.md": {"{literalinclude} ../CITATION.cff"},
     "docs/format.md": {INDENTED},  # formulas
     "docs/index.md": {"{include} ../README.md", "{toctree}"},
