@@ -37,7 +37,7 @@ quick: .venv/testing
 	@echo "Running the tests of every day: about a minute on two quiet cores"
 	$(PYTEST) tests/reference/numbers tests/reference/model tests/reference/solver tests/compare/score $(addprefix --ignore=,$(SELDOM))
 
-# Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was
+# Every dataset that ships and is missing, then the pages, of which atlas/index.html is the first; what was stopped goes on where it was
 atlas: .venv/testing
 	@echo "Making the golden datasets that are missing: minutes to hours on both cores"
 	$(BIN)/foucault generate --all

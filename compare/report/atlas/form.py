@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, get_args
 from reference import Scene, load_scene, scene_ids
 from reference.scenes.inputs import GravityIs
 from reference.scenes.scene import MAX_ROWS, field_names, unit_of
-from reference.solver import swing
+from reference.solver.swing import FAST, LEAN, NO_SWING, ONE_SIDE, SMALL, UNDECIDED, left_out
 
 from ..page import Html, text
 
@@ -103,13 +103,13 @@ def form_words() -> dict[str, Any]:
         "NUMBER_EXPECTED": "a decimal number such as 67 or 7.292115e-5",
         "MAX_ROWS": MAX_ROWS,
         "REASONS": {
-            "NO_SWING": swing.NO_SWING,
-            "LEAN": swing.LEAN,
-            "ONE_SIDE": swing.ONE_SIDE,
-            "FAST": swing.FAST,
-            "SMALL": swing.SMALL,
-            "UNDECIDED": swing.UNDECIDED,
-            "STILL": swing.left_out("", still=True)["full_turn_h"],
+            "NO_SWING": NO_SWING,
+            "LEAN": LEAN,
+            "ONE_SIDE": ONE_SIDE,
+            "FAST": FAST,
+            "SMALL": SMALL,
+            "UNDECIDED": UNDECIDED,
+            "STILL": left_out("", still=True)["full_turn_h"],
         },
         "UNDECIDED_TRANSITS": "double precision does not decide how many transits there are",
     }

@@ -1,6 +1,15 @@
 // The observation: how a right motion became the columns of a file, as compare/diagnosis/observed.py. Maps are fitted to the
-// truth; one that leaves more than is allowed is not named. Needs judging.js, and its words and thresholds (parts.py).
+// truth; one that leaves more than is allowed is not named. Needs judging.js.
 "use strict";
+
+// as in compare/diagnosis/thresholds.py, which says what each protects against
+const FINEST = 1e-3;
+const ROUNDED = 1.5;
+const RIVAL = 3;
+const ROWS_A_NUMBER = 4;
+const ALTERNATIVES = 3;
+const CHANCE = 0.01;
+const MOST_DIGITS = 7;
 
 const LATE_ROWS = [1, -1, 2, -2]; // by which a column may be late
 const MAP_DIGITS = 10; // of a fitted number at most
@@ -30,7 +39,7 @@ function shortestDecimal(value, doubt) {
 }
 
 // Whether somebody may have typed a number: its shortest decimal within a doubt is no accident.
-function hasFewDigits(value, uncertainty, { CHANCE, MOST_DIGITS }) {
+function hasFewDigits(value, uncertainty) {
   const doubt = Math.max(uncertainty, 2 ** -50 * Math.abs(value));
   if (Math.abs(value) <= doubt) return true;
   const { digits } = shortestDecimal(value, doubt);
@@ -39,9 +48,9 @@ function hasFewDigits(value, uncertainty, { CHANCE, MOST_DIGITS }) {
 }
 
 // A fitted number: its text, and its price, which is 0 if somebody may have typed it.
-function fittedNumber(value, uncertainty, words) {
+function fittedNumber(value, uncertainty) {
   const text = shortNumber(shortestDecimal(value, uncertainty).value, MAP_DIGITS);
-  return { text, price: hasFewDigits(value, uncertainty, words) ? 0 : 1 };
+  return { text, price: hasFewDigits(value, uncertainty) ? 0 : 1 };
 }
 
 // The number of decimals that x and y are printed with; null if they are more than programs round to.
@@ -69,9 +78,8 @@ function observedCase(columns, { rows, golden }, truth, allowed) {
     printed: Object.fromEntries(names.map((name) => [name, rows.map((row) => columns[name][row])])),
     golden,
     length: truth.length_m,
-    allowed: Math.max(allowed, truth.words.ROUNDED * noise),
-    resolution: Math.max(noise, truth.words.FINEST * allowed),
-    words: truth.words,
+    allowed: Math.max(allowed, ROUNDED * noise),
+    resolution: Math.max(noise, FINEST * allowed),
   };
 }
 
@@ -92,7 +100,7 @@ function heightMoved(shift, { length, allowed }) {
 // The maps of one column: {text, columns: {name: values}, price}.
 
 function columnMaps(found, name) {
-  const { names, printed: all, golden, resolution, words, times } = found;
+  const { names, printed: all, golden, resolution, times } = found;
   const printed = all[name];
   const right = golden[name];
   const map = (text, values, price = 1) => ({ text, columns: { [name]: values }, price });
@@ -112,15 +120,15 @@ function columnMaps(found, name) {
   const square = inProduct(right, right);
   const factor = square ? inProduct(right, printed) / square : 0;
   const size = rootMeanSquare(right);
-  if (Math.min(Math.abs(factor), Math.abs(factor + 1)) * size > words.RIVAL * resolution) {
+  if (Math.min(Math.abs(factor), Math.abs(factor + 1)) * size > RIVAL * resolution) {
     const scaled = right.map((value) => factor * value);
-    const number = fittedNumber(factor, uncertaintyOf(lessThan(printed, scaled), found) / size, words);
+    const number = fittedNumber(factor, uncertaintyOf(lessThan(printed, scaled), found) / size);
     maps.push(map(`prints ${name} times ${number.text}`, scaled, 1 + number.price));
   }
 
   const shift = mean(lessThan(printed, right));
   const moved = right.map((value) => value + shift);
-  const number = fittedNumber(shift, uncertaintyOf(lessThan(printed, moved), found), words);
+  const number = fittedNumber(shift, uncertaintyOf(lessThan(printed, moved), found));
   const added = name === "z" ? heightMoved(shift, found) : `prints ${name} with ${number.text} m added to it`;
   maps.push(map(added, moved, 1 + number.price));
 
@@ -135,7 +143,7 @@ function columnMaps(found, name) {
 // The maps of x and y together: scaled, turned, moved.
 
 function planeMaps(found) {
-  const { printed, golden, words } = found;
+  const { printed, golden } = found;
   const [x, y] = [golden.x, golden.y];
   const square = inProduct(x, x) + inProduct(y, y);
   const along = (inProduct(x, printed.x) + inProduct(y, printed.y)) / square;
@@ -154,26 +162,26 @@ function planeMaps(found) {
   const maps = [];
 
   const scaled = made(along, 0);
-  const scale = fittedNumber(along, residual(scaled) / size, words);
+  const scale = fittedNumber(along, residual(scaled) / size);
   maps.push({ text: `prints x and y times ${scale.text}`, columns: scaled, price: 1 + scale.price });
 
   const turn = Math.atan2(across, along);
   const turned = made(Math.cos(turn), Math.sin(turn));
   const doubt = residual(turned) / size;
-  const radians = fittedNumber(turn, doubt, words);
-  const degrees_ = fittedNumber(turn * inDegrees, doubt * inDegrees, words);
+  const radians = fittedNumber(turn, doubt);
+  const degrees_ = fittedNumber(turn * inDegrees, doubt * inDegrees);
   const angle = radians.price ? `${degrees_.text} degrees` : `${radians.text} rad`;
   maps.push({ text: `prints x and y turned by ${angle}, anticlockwise`, columns: turned, price: 1 + radians.price * degrees_.price });
 
   const [east, north] = ["x", "y"].map((name) => mean(lessThan(printed[name], golden[name])));
   const moved = made(1, 0, east, north);
-  const [right, up] = [east, north].map((value) => fittedNumber(value, residual(moved), words));
+  const [right, up] = [east, north].map((value) => fittedNumber(value, residual(moved)));
   maps.push({ text: `prints x and y with ${right.text} m and ${up.text} m added to them`, columns: moved, price: 2 + right.price + up.price });
 
   const both = made(along, across);
   const close = residual(both) / size;
-  const length = fittedNumber(Math.hypot(along, across), close, words);
-  const round = fittedNumber(turn * inDegrees, close * inDegrees, words);
+  const length = fittedNumber(Math.hypot(along, across), close);
+  const round = fittedNumber(turn * inDegrees, close * inDegrees);
   const text = `prints x and y times ${length.text} and turned by ${round.text} degrees, anticlockwise`;
   maps.push({ text, columns: both, price: 2 + length.price + round.price });
   return maps;
@@ -183,10 +191,10 @@ const residualsOf = ({ printed }, { columns }) => Object.keys(columns).flatMap((
 
 // The cheapest of the maps that make their columns: several if they fit as well.
 function bestMaps(found, maps) {
-  const { resolution, allowed, words } = found;
+  const { resolution, allowed } = found;
   const left = maps.map((map) => residualsOf(found, map));
   const sizes = left.map((residuals) => Math.max(rootMeanSquare(residuals), resolution));
-  const most = words.RIVAL * sizes.reduce((least, size) => Math.min(least, size), Infinity);
+  const most = RIVAL * sizes.reduce((least, size) => Math.min(least, size), Infinity);
   const near = maps.filter((_, i) => sizes[i] <= most && farthest(left[i]) <= allowed);
   const price = near.reduce((least, map) => Math.min(least, map.price), Infinity);
   return near.filter((map) => map.price === price);
@@ -196,7 +204,7 @@ const priceOf = (groups) => groups.reduce((total, maps) => total + (maps.length 
 
 // What a right program's columns were mapped by: {texts, rest in m}; null if no map made all wrong columns.
 function observation(found, truth) {
-  const { names, printed, golden, allowed, words, times } = found;
+  const { names, printed, golden, allowed, times } = found;
   const wrong = names.filter((name) => farthest(lessThan(printed[name], golden[name])) > allowed);
   if (!wrong.length || times[times.length - 1] * truth.omega < 2 * Math.PI) return null;
 
@@ -208,8 +216,8 @@ function observation(found, truth) {
     if (priceOf(together) < priceOf(separate)) groups = together;
   }
   const price = priceOf(groups);
-  if (!Number.isFinite(price) || words.ROWS_A_NUMBER * price > times.length) return null;
-  if (groups.some((maps) => maps.length > words.ALTERNATIVES)) return null;
+  if (!Number.isFinite(price) || ROWS_A_NUMBER * price > times.length) return null;
+  if (groups.some((maps) => maps.length > ALTERNATIVES)) return null;
 
   const texts = groups.map((maps) => (maps.length > 1 ? "either " : "") + maps.map((map) => map.text).join(", or "));
   const mended = Object.assign({}, golden, ...groups.map(([map]) => map.columns));
@@ -218,7 +226,7 @@ function observation(found, truth) {
 }
 
 // A clock that runs faster or slower than its motion, fitted to more and more rows: {text, rest}, or null.
-function clockRate({ names, times, printed, allowed, words }, truth) {
+function clockRate({ names, times, printed, allowed }, truth) {
   if (!truth.at || times.length < FIRST_ROWS) return null;
   let rate = 1; // of the motion, over that of the clock
 
@@ -245,8 +253,8 @@ function clockRate({ names, times, printed, allowed, words }, truth) {
   const rest = farthest(states.map((state, row) => Math.hypot(...missed(state, row))));
   const speed = rootMeanSquare(states.map((state, row) => times[row] * Math.hypot(state[3], state[4])));
   if (rest > allowed || !speed) return null;
-  const value = fittedNumber(1 / rate, Math.max(rest, words.FINEST * allowed) / speed, words);
-  return { text: words.CLOCK_SAID.replace("{value}", value.text), rest };
+  const value = fittedNumber(1 / rate, Math.max(rest, FINEST * allowed) / speed);
+  return { text: `has a clock that runs ${value.text} times as fast as its motion: divide its times by that`, rest };
 }
 
 // The sentences of an observation: none if the page finds none.

@@ -26,8 +26,7 @@ from reference.status import Status
 from ...candidates import candidate, clock, header, names, read
 from ...candidates import text as text_reader
 from ...candidates.candidate import Deviation
-from ...diagnosis import AXES_SAID, LENGTHS_SAID, TIMES_SAID, thresholds
-from ...diagnosis.causes import CLOCK
+from ...diagnosis import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from ...score.clock_start import SUBTRACT
 from ...score.errors import swing_rate
 from ...score.judge import SMALL
@@ -40,16 +39,6 @@ from .entry import Entry, StudyResults, run_name
 
 # of the proof's THEOREM.md
 _THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}
-# thresholds of the observation that the page shares
-_THRESHOLDS = (
-    "FINEST",
-    "ROUNDED",
-    "RIVAL",
-    "ROWS_A_NUMBER",
-    "ALTERNATIVES",
-    "CHANCE",
-    "MOST_DIGITS",
-)
 _IMPORTED = {"IO", "UTC"}  # names in capitals that the modules of the vocabulary import
 
 
@@ -233,7 +222,7 @@ def vocabulary() -> dict[str, Any]:
         for name, value in vars(module).items():
             if name.isupper() and not name.startswith("_") and name not in _IMPORTED:
                 tables[name] = value
-    sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID, "CLOCK_SAID": CLOCK}
+    sentences = {"LENGTHS_SAID": LENGTHS_SAID, "TIMES_SAID": TIMES_SAID}
     limits = {
         "TOLERANCE": TOLERANCE,
         "SUBTRACT": SUBTRACT,
@@ -242,7 +231,6 @@ def vocabulary() -> dict[str, Any]:
         "SAME": SAME,
         "SMALL": SMALL,
     }
-    limits |= {name: getattr(thresholds, name) for name in _THRESHOLDS}
     axes = [[*order, *signs, text] for (order, signs), (_, text) in AXES_SAID.items()]
     return tables | sentences | limits | {"WHOLE": WHOLE, "AXES_SAID": axes}
 

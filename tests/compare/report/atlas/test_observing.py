@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 
 import numpy as np
@@ -11,8 +12,10 @@ from page_motion import code, node
 
 import reference
 from compare import judge
+from compare.diagnosis import thresholds
 from compare.report.atlas.form import fields, form_words, texts_of
 from compare.report.atlas.parts import vocabulary
+from compare.report.atlas.scripts import source
 from reference import load_scene
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -90,6 +93,13 @@ MAPS = {
 def file_of(columns):
     names = [name for name, column in zip("txyz", columns, strict=True) if column is not None]
     return csv(",".join(names), *(column for column in columns if column is not None))
+
+
+def test_the_thresholds_are_those_of_the_package():
+    numbers = re.findall(r"^const ([A-Z_]+) = ([\d.e-]+);", source("observing.js"), re.M)
+    shared = {name: float(text) for name, text in numbers if hasattr(thresholds, name)}
+    assert len(shared) == 7
+    assert shared == {name: getattr(thresholds, name) for name in shared}
 
 
 def test_an_observation_has_the_words_of_the_package(motion, size, tmp_path):
