@@ -48,11 +48,16 @@ def node(script: str, document: dict[str, Any]) -> Any:
     return json.loads(done.stdout)
 
 
+def words() -> dict[str, Any]:
+    """Return the words and limits that the page has."""
+    return vocabulary() | form_words()
+
+
 def motions(cases: Iterable[tuple[Scene, Sequence[float]]]) -> list[dict[str, Any]]:
     """Return for each scene its states at some times in s, their estimated errors in m, its facts and its transits."""
     document = {
         "fields": fields(),
-        "words": vocabulary() | form_words(),
+        "words": words(),
         "cases": [{"texts": texts_of(scene), "times": [*times]} for scene, times in cases],
     }
     told: list[dict[str, Any]] = node(code() + _RUN, document)

@@ -219,14 +219,15 @@ async function judgeFiles(chosen) {
   shown.replaceChildren(made("p", { className: "word" }, "Judging …"));
   const result = await worker.ask("judge", { files, tolerance: at("tolerance").value });
   if (worker !== motion.worker) return;
-  const scene = { name: pendulum.title || "this pendulum", end: sceneOf(pendulum.texts, fields).run.t_end, known: knownBy };
+  const { run } = sceneOf(pendulum.texts, fields);
+  const scene = { name: pendulum.title || "this pendulum", end: run.t_end, known: knownBy, bound: "estimated error of the page" };
   showVerdict(shown, files, result, scene, furtherSteps(result));
   if (result.mine) player.drop(result.mine, result.path.max_error_m);
 }
 
 function judgePasted() {
   const text = at("pasted").value;
-  if (text.trim()) judgeFiles([new File([text], "your rows")]);
+  if (text.trim()) judgeFiles([new File([text], "your output")]);
 }
 
 // What can be kept.

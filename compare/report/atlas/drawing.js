@@ -10,8 +10,8 @@ const rounded = (value, digits) => String(Number(value.toPrecision(digits)));
 const small = (value) => rounded(value, 3);
 const raised = (exponent) => `10${exponent < 0 ? "⁻" : ""}${[...String(Math.abs(exponent))].map((digit) => RAISED[digit]).join("")}`;
 
-// Points [[t, error], …] and lines at the tolerance and at the bound; it spans the file.
-function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, wide) {
+// Points [[t, error], …] and lines at the tolerance and at the bound, with its word; it spans the file.
+function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, wide, boundWord) {
   const low = Math.floor(Math.log10(bound / 10));
   const floor = 10 ** low;
   const high = Math.ceil(Math.log10(Math.max(tolerance, bound, ...points.map((point) => point[1])) * 1.5));
@@ -29,7 +29,7 @@ function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, 
     parts.push(`<text x="${x(t)}" y="${TALL - BOTTOM + 16}" text-anchor="${share === 1 ? "end" : "middle"}">${rounded(t, 6)}</text>`);
   }
   const line = (value, word) => `<path class="guide" d="M${LEFT} ${y(value)}H${wide - 10}"/><text x="${wide - 12}" y="${Number(y(value)) - 4}" text-anchor="end">${word}</text>`;
-  parts.push(line(tolerance, "tolerance"), line(bound, "bound of the truth"));
+  parts.push(line(tolerance, "tolerance"), line(bound, boundWord));
   parts.push(`<path class="error" d="${points.map(([t, error], i) => `${i ? "L" : "M"}${x(t)} ${y(error)}`).join("")}"/>`);
   if (points.length === 1) parts.push(`<circle cx="${x(points[0][0])}" cy="${y(points[0][1])}" r="3"/>`);
   parts.push(`<text x="${(LEFT + wide) / 2}" y="${TALL - 4}" text-anchor="middle">t in s</text>`);

@@ -50,7 +50,7 @@ async function take(files) {
   const worker = await judgingWorker();
   const result = await worker.ask("judge", { files: last, tolerance: tolerance.value });
   if (drop !== drops) return;
-  const scene = { name: page.id, end: page.t_end, known: heldAgainst };
+  const scene = { name: page.id, end: page.t_end, known: heldAgainst, bound: "bound of the truth" };
   showVerdict(shown, last, result, scene, page.missing ? [page.missing] : []);
   if (result.mine) player.drop(result.mine, result.path.max_error_m);
 }

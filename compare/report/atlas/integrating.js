@@ -55,7 +55,8 @@ function releaseOf({ pendulum, release }) {
 }
 
 // What is integrated. Lengths are divided by the cord's, and time by a unit, a power of two, in which the fastest rate is
-// about 1. `moved` units in the last place are added to each constant and to the release.
+// about 1. Each constant and the release are moved by `moved` units in the last place: the drag the other way, since a bob
+// that creeps feels only the quotient of pull and drag.
 function problemOf(scene, moved = 0) {
   const factor = 1 + moved * ULP;
   const { length, drag } = scene.pendulum;
@@ -76,7 +77,7 @@ function problemOf(scene, moved = 0) {
     length,
     unit,
     swing,
-    constants: drag ? [...turn, ...pull, drag * factor * unit] : [...turn, ...pull],
+    constants: drag ? [...turn, ...pull, (drag / factor) * unit] : [...turn, ...pull],
     fill: drag ? seriesWithDrag : seriesWithoutDrag,
     start: [...n, ...momentum],
     velocity: v,

@@ -69,7 +69,7 @@ function playerOf(element, load) {
   function sized() {
     const across = element.clientWidth < BROAD ? 1 : panels.length;
     const down = panels.length / across;
-    const side = Math.min(MOST_SIDE, (element.clientWidth - 12) / across);
+    const side = Math.max(2 * MARGIN, Math.min(MOST_SIDE, (element.clientWidth - 12) / across));
     const ratio = devicePixelRatio || 1;
     canvas.style.width = `${side * across}px`;
     canvas.style.height = `${side * down}px`;

@@ -64,9 +64,9 @@ function showRefusal(shown, reason) {
   shown.replaceChildren(made("p", { className: "word" }, made("strong", {}, "Not judged")), made("p", {}, reason));
 }
 
-// Show a verdict on files in an element. `scene` has its name and end, and `known` says by what was judged; `notes` follow
-// those of the verdict.
-function showVerdict(shown, files, result, { name, end, known }, notes = []) {
+// Show a verdict on files in an element. `scene` has its name and end, `known` says by what was judged, and
+// `bound` what its error is called; `notes` follow those of the verdict.
+function showVerdict(shown, files, result, { name, end, known, bound }, notes = []) {
   if (result.refused) {
     showRefusal(shown, result.refused);
     return;
@@ -77,9 +77,9 @@ function showVerdict(shown, files, result, { name, end, known }, notes = []) {
   const names = files.map((file) => file.name).join(" and ");
   const word = made("p", { className: "word" }, made("strong", {}, `${names} ${result.verdict}`), ` with ${name}`);
   shown.className = result.verdict;
-  shown.replaceChildren(word, factsMade(rows), made("ul", {}, ...items));
+  shown.replaceChildren(word, made("ul", {}, ...items), factsMade(rows));
   const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
-  if (result.points) shown.append(pictureMade(errorPicture(result, wide)));
+  if (result.points) shown.append(pictureMade(errorPicture(result, wide, bound)));
 }
 
 // Take the files that are dropped on a zone or chosen.

@@ -42,18 +42,20 @@ function firstSwings(scene) {
   return { steps, facts: { end, ...reachOf(gridOf(motionOf(steps), end, end / 1000), length) } };
 }
 
-// The estimated error of the position in m, as a function of the time: it never decreases.
+// The estimated error of the position in m, as a function of the time; it never decreases. Besides the difference of the
+// two runs it has what the roundings of the steps may add up to, which both may have in the same direction.
 function errorOf(first, second, end) {
-  const { length, swing } = first.problem;
-  const least = 4 * ULP * length;
-  const errors = [least];
+  const { length, swing, unit } = first.problem;
+  const rounding = (time) => ULP * length * (4 + Math.sqrt(lastBefore(first.steps.starts, time / unit)));
+  const errors = [rounding(0)];
   for (let i = 1; i <= SAMPLES; i += 1) {
     const time = (end * i) / SAMPLES;
     const one = first.at(time);
     const other = second.at(time);
     const gaps = one.map((value, k) => value - other[k]);
     const phase = swing ? norm(gaps.slice(3)) / swing : 0; // of a bob at its highest point
-    errors.push(Math.max(errors[i - 1], least + CAUTION * (norm(gaps.slice(0, 3)) + phase)));
+    const gap = norm(gaps.slice(0, 3)) + phase;
+    errors.push(Math.max(errors[i - 1], rounding(time) + CAUTION * gap));
   }
   return (time) => errors[Math.min(Math.ceil((SAMPLES * time) / end), SAMPLES)];
 }

@@ -8,13 +8,12 @@ import shutil
 import numpy as np
 import pytest
 from dropped import csv, trajectories
-from page_motion import code, node
+from page_motion import code, node, words
 
 import reference
 from compare import judge
 from compare.diagnosis import thresholds
-from compare.report.atlas.form import fields, form_words, texts_of
-from compare.report.atlas.parts import vocabulary
+from compare.report.atlas.form import fields, texts_of
 from compare.report.atlas.scripts import source
 from reference import load_scene
 
@@ -33,8 +32,7 @@ console.log(JSON.stringify(told));
 
 def answers(scene, files):
     """Return what the page answers to each file."""
-    words = vocabulary() | form_words()
-    document = {"texts": texts_of(scene), "files": [*files], "fields": fields(), "words": words}
+    document = {"texts": texts_of(scene), "files": [*files], "fields": fields(), "words": words()}
     return node(code() + _ANSWER, document)
 
 

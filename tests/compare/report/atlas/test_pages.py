@@ -289,6 +289,7 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_pat
     )
     assert told["fits"], "the page is wider than a phone"
     assert told["errors"] == []
+    assert told["moved"][-1].startswith("Computed in this page, its error estimated at ")
     words = [one[0] for one in told["told"]]
     late = "disagrees" if beside else "refused"  # no row of it is at a golden time
     assert words == ["agrees", "agrees", "disagrees", "disagrees", late, "refused"]

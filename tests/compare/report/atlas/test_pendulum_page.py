@@ -154,7 +154,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
         told["right"] == "" and "pendulum.length=10" in told["link"] and "evil" not in told["link"]
     )
 
-    assert told["agrees"][0] == "agrees" and "your rows agrees" in told["agrees"][1]
+    assert told["agrees"][0] == "agrees" and "your output agrees" in told["agrees"][1]
     assert told["swapped"][0] == "disagrees"
     assert "Your file writes north as x and east as y: put right" in told["swapped"][1]
     assert told["wrongRows"][0] == "disagrees"
