@@ -79,7 +79,12 @@ function answer(files, tolerance, truth) {
 // Let a worker answer messages {id, task, …} by tasks, functions of the message and of what reports the progress.
 function serve(tasks) {
   onmessage = async ({ data: { id, task, ...message } }) => {
-    const result = await tasks[task](message, (progress) => postMessage({ id, progress }));
-    postMessage({ id, result });
+    try {
+      const result = await tasks[task](message, (progress) => postMessage({ id, progress }));
+      postMessage({ id, result });
+    } catch (error) {
+      postMessage({ id, result: { refused: `The script failed: ${error.message}.` } });
+      throw error;
+    }
   };
 }

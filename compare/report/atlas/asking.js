@@ -110,7 +110,10 @@ function factRows(facts) {
   const count = facts.transits === null ? words.UNDECIDED_TRANSITS : facts.transits.toLocaleString("en");
   rows.push(["transits", facts.transits ? `${count}, each within ${small(facts.transitError)} s (estimated)` : count]);
   rows.push(["error", `${small(facts.error)} m at the end, estimated from a second run`]);
-  if (facts.until < facts.end) rows.push(["in doubles", `known to a millionth of the amplitude up to t = ${small(facts.until)} s; ask the command for the rest`]);
+  if (facts.until < facts.end) {
+    const known = `known to a millionth of the amplitude up to t = ${small(facts.until)} s`;
+    rows.push(["in doubles", `${known}; ask the command for the rest`]);
+  }
   return rows;
 }
 
@@ -207,7 +210,8 @@ function furtherSteps(result) {
   if (result.verdict !== "disagrees") return [];
   if (result.notes.some((note) => note.includes("put right"))) return [];
   const command = "foucault score pendulum.toml FILE";
-  return [`This page finds no reason in the clock, the unit or the axes. Save pendulum.toml below; the command looks further: ${command}`];
+  const nothing = "This page finds no reason in the clock, the unit or the axes.";
+  return [`${nothing} Save pendulum.toml below; the command looks further: ${command}`];
 }
 
 async function judgeFiles(chosen) {

@@ -110,7 +110,8 @@ function tomlOf(title, texts, fields) {
   const kind = KINDS[kindOf(texts)];
   for (const table of ["pendulum", "site", "release", "run"]) {
     lines.push("", `[${table}]`);
-    for (const { name, default: value } of fields.filter((field) => field.name.startsWith(`${table}.`))) {
+    const inTable = fields.filter((field) => field.name.startsWith(`${table}.`));
+    for (const { name, default: value } of inTable) {
       const text = texts[name] ?? value;
       if (text === null || (table === "release" && !kind.includes(name))) continue;
       lines.push(`${name.split(".")[1]} = ${quoted(text)}`);

@@ -36,7 +36,8 @@ function constantsOf({ pendulum, site }) {
   const [sin, cos] = circle(site.latitude);
   const flattening = 1 / site.inverse_flattening;
   const constants = site.gravity_is === "effective" ? constantsOfEffectiveGravity : constantsOfGravityAlone;
-  return constants(pendulum.length, site.gravity, site.rotation_rate, site.equatorial_radius, flattening, site.altitude, sin, cos);
+  const { gravity, rotation_rate: rate, equatorial_radius: radius, altitude } = site;
+  return constants(pendulum.length, gravity, rate, radius, flattening, altitude, sin, cos);
 }
 
 // Position in m and velocity in m/s at t = 0: [x, y, z, vx, vy, vz].
@@ -46,7 +47,9 @@ function releaseOf({ pendulum, release }) {
     const radians = (degrees = 0) => (degrees * Math.PI) / 180;
     const [angleSin, angleCos] = circle(release.angle);
     const [azimuthSin, azimuthCos] = circle(release.azimuth);
-    return releaseAtAngles(length, angleSin, angleCos, radians(release.angle_rate), azimuthSin, azimuthCos, radians(release.azimuth_rate));
+    const angleRate = radians(release.angle_rate);
+    const azimuthRate = radians(release.azimuth_rate);
+    return releaseAtAngles(length, angleSin, angleCos, angleRate, azimuthSin, azimuthCos, azimuthRate);
   }
   const { x, y, vx = 0, vy = 0 } = release;
   const aside = Math.hypot(x, y);

@@ -176,12 +176,14 @@ function planeMaps(found) {
   const radians = fittedNumber(turn, doubt);
   const degrees_ = fittedNumber(turn * inDegrees, doubt * inDegrees);
   const angle = radians.price ? `${degrees_.text} degrees` : `${radians.text} rad`;
-  maps.push({ text: `prints x and y turned by ${angle}, anticlockwise`, columns: turned, price: 1 + radians.price * degrees_.price });
+  const turnedText = `prints x and y turned by ${angle}, anticlockwise`;
+  maps.push({ text: turnedText, columns: turned, price: 1 + radians.price * degrees_.price });
 
   const [east, north] = ["x", "y"].map((name) => mean(lessThan(printed[name], golden[name])));
   const moved = made(1, 0, east, north);
   const [right, up] = [east, north].map((value) => fittedNumber(value, residual(moved)));
-  maps.push({ text: `prints x and y with ${right.text} m and ${up.text} m added to them`, columns: moved, price: 2 + right.price + up.price });
+  const movedText = `prints x and y with ${right.text} m and ${up.text} m added to them`;
+  maps.push({ text: movedText, columns: moved, price: 2 + right.price + up.price });
 
   const both = made(along, across);
   const close = residual(both) / size;

@@ -27,7 +27,9 @@ function disc(context, [x, y], radius, filled) {
 // A player in an element of player.html. `load` returns a promise of the motion {at, end, period, amplitude, length, wide}
 // or of null; it is called when the player is first used.
 function playerOf(element, load) {
-  const [canvas, button, speed, slider, output] = ["canvas", "button", "select", "input", "output"].map((name) => element.querySelector(name));
+  const part = (name) => element.querySelector(name);
+  const [canvas, button, speed] = [part("canvas"), part("button"), part("select")];
+  const [slider, output] = [part("input"), part("output")];
   let motion = null;
   let panels = []; // { across, up, size, title }: two components, and the length in m that half of the panel shows
   let dropped = null; // { t, x, y, scale } of a dropped file

@@ -83,10 +83,11 @@ function transitsOf(first, second, omega) {
   const { length, unit } = first.problem;
   if (first.transits.length !== second.transits.length) return null;
   const acceleration = length / unit ** 2;
+  const late = (one, other) => CAUTION * unit * Math.abs(one.time - other.time);
   return {
     t: Float64Array.from(first.transits, ({ time }) => time * unit),
     weight: Float64Array.from(first.transits, ({ slope }) => (omega ? (acceleration * Math.abs(slope)) / omega : 0)),
-    error: first.transits.reduce((most, { time }, i) => Math.max(most, CAUTION * unit * Math.abs(time - second.transits[i].time)), 0),
+    error: first.transits.reduce((most, transit, i) => Math.max(most, late(transit, second.transits[i])), 0),
   };
 }
 
@@ -154,5 +155,6 @@ function answerBy({ truth, facts }, files, tolerance) {
   if (result.refused || result.tolerance_m >= facts.error) return result;
   const known = `${facts.error.toPrecision(3)} m`;
   const allowed = `${result.tolerance_m.toPrecision(3)} m`;
-  return { refused: `This page knows the motion to ${known} only, and the tolerance is ${allowed}. Shorten the run, or use the command.` };
+  const reason = `This page knows the motion to ${known} only, and the tolerance is ${allowed}.`;
+  return { refused: `${reason} Shorten the run, or use the command.` };
 }
