@@ -5,6 +5,7 @@ const { fields, presets, words } = JSON.parse(document.getElementById("known").t
 const at = (id) => document.getElementById(id);
 const form = at("pendulum");
 const BEGIN = "paris";
+const MOST_PRINTED = 500_000; // rows of a CSV
 const PAUSE = 250; // ms from the last key to the motion
 const COMPASS = ["release.azimuth", "release.azimuth_rate"];
 
@@ -246,8 +247,8 @@ function save(name, text, type) {
 async function saveRows() {
   const run = sceneOf(pendulum.texts, fields).run;
   const step = Number(at("step").value || run.grid_step);
-  if (!(step > 0 && run.t_end / step <= words.MAX_ROWS)) {
-    at("saved").textContent = `Expected a number above 0, and at most ${words.MAX_ROWS} rows.`;
+  if (!(step > 0 && run.t_end / step <= MOST_PRINTED)) {
+    at("saved").textContent = `Expected a number above 0, and at most ${MOST_PRINTED.toLocaleString("en")} rows.`;
     return;
   }
   if (!motion?.facts) return;

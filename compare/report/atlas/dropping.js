@@ -9,9 +9,9 @@ let last = [];
 let drops = 0; // so far: of two the later one is shown
 
 // The golden function {record, coefficients, end}: in the page, or in a script beside it; null without one.
-let goldenFunction = null;
+let functionRead = null; // a promise of it
 function functionMade() {
-  goldenFunction ??= page.beside === null ? Promise.resolve(page.function) : new Promise((done) => {
+  functionRead ??= page.beside === null ? Promise.resolve(page.function) : new Promise((done) => {
     const script = document.createElement("script");
     script.onload = () => done(globalThis.goldenFunction);
     script.onerror = () => {
@@ -21,15 +21,15 @@ function functionMade() {
     script.src = page.beside;
     document.head.append(script);
   });
-  return goldenFunction;
+  return functionRead;
 }
 
 // What answers files: a worker that knows the golden data.
 let judging = null;
 function judgingWorker() {
-  judging ??= functionMade().then(async (function_) => {
+  judging ??= functionMade().then(async (golden) => {
     const worker = startedWorker("judging");
-    await worker.ask("know", { data: page, made: function_ });
+    await worker.ask("know", { data: page, made: golden });
     return worker;
   });
   return judging;

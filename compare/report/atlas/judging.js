@@ -234,8 +234,9 @@ function suspicions(columns, { rows, golden }, errors, truth) {
   const { x: ex, y: ey } = errors.components;
   const square = vx.reduce((sum, u, i) => sum + u ** 2 + vy[i] ** 2, 0);
   const late = -vx.reduce((sum, u, i) => sum + u * ex[i] + vy[i] * ey[i], 0) / square;
-  const ez = errors.components.z ?? vx.map(() => 0);
-  const rest = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], ez[i] + late * vz[i])));
+  const ez = errors.components.z;
+  const height = (i) => (ez ? ez[i] + late * vz[i] : 0);
+  const rest = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], height(i))));
   return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
 }
 

@@ -5,6 +5,7 @@
 // as in compare/diagnosis/thresholds.py, which says what each protects against
 const FINEST = 1e-3;
 const ROUNDED = 1.5;
+const NEEDED = 10;
 const RIVAL = 3;
 const ROWS_A_NUMBER = 4;
 const ALTERNATIVES = 3;
@@ -74,16 +75,20 @@ function observedCase(columns, judged, truth, allowed) {
   const golden = Object.fromEntries(POSITION.map((name) => [name, judged.golden[name].filter(isTaken)]));
   const names = POSITION.filter((name) => name in columns);
   const decimals = decimalsOf(columns);
+  const printed = Object.fromEntries(names.map((name) => [name, rows.map((row) => columns[name][row])]));
+  const error = farthest(names.flatMap((name) => lessThan(printed[name], golden[name])));
   const noise = decimals === null ? 0 : 0.5 * 10 ** -decimals; // of the rounding of its numbers, in m
+  const enough = Math.max(allowed, ROUNDED * noise);
   return {
     names,
     decimals,
     noise,
     times: rows.map((row) => columns.t[row]),
-    printed: Object.fromEntries(names.map((name) => [name, rows.map((row) => columns[name][row])])),
+    printed,
     golden,
     length: truth.length_m,
-    allowed: Math.max(allowed, ROUNDED * noise),
+    allowed: enough,
+    left: Math.max(Math.min(enough, error / NEEDED), noise), // at most, by a map that is named
     resolution: Math.max(noise, FINEST * allowed),
   };
 }
@@ -198,11 +203,11 @@ const residualsOf = ({ printed }, { columns }) => Object.keys(columns).flatMap((
 
 // The cheapest of the maps that make their columns: several if they fit as well.
 function bestMaps(found, maps) {
-  const { resolution, allowed } = found;
+  const { resolution, left: leftAtMost } = found;
   const left = maps.map((map) => residualsOf(found, map));
   const sizes = left.map((residuals) => Math.max(rootMeanSquare(residuals), resolution));
   const most = RIVAL * sizes.reduce((least, size) => Math.min(least, size), Infinity);
-  const near = maps.filter((_, i) => sizes[i] <= most && farthest(left[i]) <= allowed);
+  const near = maps.filter((_, i) => sizes[i] <= most && farthest(left[i]) <= leftAtMost);
   const price = near.reduce((least, map) => Math.min(least, map.price), Infinity);
   return near.filter((map) => map.price === price);
 }
@@ -233,7 +238,7 @@ function observation(found, truth) {
 }
 
 // A clock that runs faster or slower than its motion, fitted to more and more rows: {text, rest}, or null.
-function clockRate({ names, times, printed, allowed }, truth) {
+function clockRate({ names, times, printed, left, resolution }, truth) {
   if (!truth.at || times.length < FIRST_ROWS) return null;
   let rate = 1; // of the motion, over that of the clock
 
@@ -259,8 +264,8 @@ function clockRate({ names, times, printed, allowed }, truth) {
   const states = statesAt(times.length);
   const rest = farthest(states.map((state, row) => Math.hypot(...missed(state, row))));
   const speed = rootMeanSquare(states.map((state, row) => times[row] * Math.hypot(state[3], state[4])));
-  if (rest > allowed || !speed) return null;
-  const value = fittedNumber(1 / rate, Math.max(rest, FINEST * allowed) / speed);
+  if (rest > left || !speed) return null;
+  const value = fittedNumber(1 / rate, Math.max(rest, resolution) / speed);
   return { text: `has a clock that runs ${value.text} times as fast as its motion: divide its times by that`, rest };
 }
 
