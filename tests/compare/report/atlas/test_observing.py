@@ -101,7 +101,7 @@ def test_the_thresholds_are_those_of_the_package():
 
 
 def test_an_observation_has_the_words_of_the_package(motion, size, tmp_path):
-    names = size(("plane_times",), MAPS)
+    names = size(("heights",), MAPS)
     files = {name: file_of(MAPS[name](*(motion[column] for column in "txyz"))) for name in names}
     for (name, text), mine in zip(files.items(), answers(SCENE, files.values()), strict=True):
         path = tmp_path / "mine.csv"

@@ -125,6 +125,19 @@ def test_period_and_precession_are_those_that_show_prints(size):
             assert abs(precession["value"] - known.precession_deg_per_h) <= error, scene_id
 
 
+def test_estimated_errors_of_period_and_precession_hold(size):
+    """Against 25 digits: both are right to the last digits of a double, and so say their estimates."""
+    for scene_id in size(("museum_gate",), ("museum_gate", "two_radians", "pole")):
+        scene = load_scene(scene_id, ["inputs=binary64", "run.t_end=100"])
+        settings = {"run.sections": "highest", "run.digits": 25, "run.level": "computed"}
+        known = reference.solve(scene.with_values(settings)).swing
+        (told,) = motions([(scene, [0.0])])
+        for name, (low, high) in (("period", known.period), ("precession", known.precession)):
+            number = told["facts"][name]
+            assert abs(number["value"] - float((low + high) / 2)) <= number["error"], scene_id
+            assert number["error"] < 1e-8 * abs(number["value"]), scene_id
+
+
 def test_a_motion_as_csv_is_read_to_the_last_bit(tmp_path):
     scene = load_scene("two_radians", ["run.t_end=1"])
     script = code() + _PRINT
