@@ -7,7 +7,12 @@ const form = at("pendulum");
 const BEGIN = "paris";
 const MOST_PRINTED = 500_000; // rows of a CSV
 const PAUSE = 250; // ms from the last key to the motion
-const COMPASS = ["release.azimuth", "release.azimuth_rate"];
+const BEARING = {
+  "release.azimuth": "direction of the bob, from north to east: 0 is north, 90 east",
+  "release.azimuth_rate": "rate of the bearing",
+};
+const COMPASS = Object.keys(BEARING);
+const AZIMUTH = Object.fromEntries(COMPASS.map((name) => [name, at(`${name}.meaning`).textContent]));
 
 let pendulum = null; // { title, texts } that the form has, without a mistake
 let motion = null; // { worker, facts } of the pendulum that is shown
@@ -55,10 +60,11 @@ function showKind() {
     for (const name of names) input(name).closest(".field").hidden = other !== kind;
   }
   at("direction-line").hidden = kind !== "angles";
+  const word = at("direction").value;
   for (const name of COMPASS) {
     const label = input(name).closest(".field").querySelector("label").firstChild;
-    const word = at("direction").value;
-    label.data = name === "release.azimuth" ? word : `${word} rate`;
+    label.data = name === "release.azimuth" ? `${word} ` : `${word} rate `;
+    at(`${name}.meaning`).textContent = word === "bearing" ? BEARING[name] : AZIMUTH[name];
   }
 }
 

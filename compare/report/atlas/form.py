@@ -138,7 +138,7 @@ _KINDS = """<label class="line"><span>given by</span> <select id="kind">
 <option value="position">x and y</option><option value="angles">angle and azimuth</option></select></label>
 <label class="line" id="direction-line"><span>direction</span> <select id="direction">
 <option value="azimuth">azimuth: from east to north</option>
-<option value="bearing">bearing: from north to east, as a compass</option>
+<option value="bearing">bearing: from north to east</option>
 </select></label>"""
 
 
