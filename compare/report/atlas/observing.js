@@ -278,5 +278,6 @@ function observed(columns, judged, truth, allowed) {
   const maps = observation(found, truth);
   if (maps) return [...rounded, `Your file ${maps.texts.join(", and it ")}: ${left(maps.rest)}`];
   const clock = clockRate(found, truth);
-  return clock ? [...rounded, `It seems that your program ${clock.text}: ${left(clock.rest)}`] : rounded;
+  const alike = "A step error may look alike: the command tells more.";
+  return clock ? [...rounded, `Perhaps your program ${clock.text}: ${left(clock.rest)} ${alike}`] : rounded;
 }
