@@ -214,8 +214,7 @@ function knownBy({ bound_m: bound }) {
 }
 
 function furtherSteps(result) {
-  if (result.verdict !== "disagrees") return [];
-  if (result.notes.some((note) => note.includes("put right"))) return [];
+  if (result.verdict !== "disagrees" || result.explained) return [];
   const command = "foucault score pendulum.toml FILE";
   const nothing = "This page finds no reason in the clock, the unit or the axes.";
   return [`${nothing} Save pendulum.toml below; the command looks further: ${command}`];

@@ -7,6 +7,7 @@
 const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a time at which the truth is known is judged there
 const EXPLAINED = 0.02; // part of the error that a suspected mistake may leave
 const MOST_EXTRA = 1000; // extra transits that are looked at one by one
+const CORRECTED = "corrected, the error is";
 const SAMPLE = 1000; // rows that show whether a suspicion is worth a look at all
 const POSITION = ["x", "y", "z"];
 const STATE = [...POSITION, "vx", "vy", "vz"];
@@ -106,6 +107,9 @@ function errorsOf(columns, { rows, golden }) {
   return { components, position, t: Float64Array.from(rows, (row) => columns.t[row]) };
 }
 
+// The end of a sentence on a mistake: the error that is left without it.
+const correctedTo = (rest) => `${CORRECTED} ${rest.toPrecision(2)} m.`;
+
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
 const reach = (xs, ys) => xs.reduce((best, x, i) => Math.max(best, Math.hypot(x, ys[i])), 0);
 
@@ -156,7 +160,7 @@ function judge(given, truth, tolerance = null) {
   const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (part > 0 && part < truth.words.SMALL ? part : 1);
   const bound = boundOf(columns, truth);
   const allowed = allowance + bound;
-  const verdict = { tolerance_m: allowance, bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], path: null, transits: null };
+  const verdict = { tolerance_m: allowance, bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, path: null, transits: null };
   let until = Math.min(truth.t_end, times?.at(-1) ?? 0); // later transits are not missed
   if (columns) {
     const errors = errorsOf(columns, judged);
@@ -165,7 +169,9 @@ function judge(given, truth, tolerance = null) {
     const apart = columns.t.length - judged.rows.length;
     if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
     if (verdict.path.max_error_m > allowed) {
-      verdict.notes.push(...mistakesIn(columns, judged, errors, truth, allowed));
+      const mistakes = mistakesIn(columns, judged, errors, truth, allowed);
+      verdict.notes.push(...mistakes);
+      verdict.explained = mistakes.some((text) => text.includes(CORRECTED));
     }
   }
   if (times && truth.transits) {
@@ -220,7 +226,7 @@ function firstWrongPlace(error) {
 function suspicions(columns, { rows, golden }, errors, truth) {
   const { words } = truth;
   const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
-  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: corrected, the error is ${rest.toPrecision(2)} m.`] : []);
+  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(rest)}`] : []);
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
       if (!unit && !axes) continue;
@@ -255,7 +261,7 @@ function unitOfTime(columns, truth) {
     const all = [...columns.t.keys()];
     if (each > 1 && truth.at && left(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
     const rest = left(all);
-    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: corrected, the error is ${rest.toPrecision(2)} m.`];
+    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(rest)}`];
   }
   return [];
 }

@@ -272,12 +272,11 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
 // The sentences of an observation: none if the page finds none.
 function observed(columns, judged, truth, allowed) {
   const found = observedCase(columns, judged, truth, allowed);
-  const left = (rest) => `put right, ${rest.toPrecision(2)} m are left.`;
   const unjudged = `no more than ${shortNumber(found.noise, 1)} of its unit can be judged`;
   const rounded = found.noise > allowed ? [`Your file prints ${found.decimals} decimals: ${unjudged}.`] : [];
   const maps = observation(found, truth);
-  if (maps) return [...rounded, `Your file ${maps.texts.join(", and it ")}: ${left(maps.rest)}`];
+  if (maps) return [...rounded, `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest)}`];
   const clock = clockRate(found, truth);
   const alike = "A step error may look alike: the command tells more.";
-  return clock ? [...rounded, `Perhaps your program ${clock.text}: ${left(clock.rest)} ${alike}`] : rounded;
+  return clock ? [...rounded, `Perhaps your program ${clock.text}: ${correctedTo(clock.rest)} ${alike}`] : rounded;
 }

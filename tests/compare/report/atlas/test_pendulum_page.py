@@ -156,7 +156,9 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
 
     assert told["agrees"][0] == "agrees" and "your output agrees" in told["agrees"][1]
     assert told["swapped"][0] == "disagrees"
-    assert "Your file writes north as x and east as y: put right" in told["swapped"][1]
+    assert (
+        "Your file writes north as x and east as y: corrected, the error is " in told["swapped"][1]
+    )
     assert told["wrongRows"][0] == "disagrees"
     assert "foucault score pendulum.toml FILE" in told["wrongRows"][1]
     assert told["header"][0] == "refused" and EVIL in told["header"][1]
