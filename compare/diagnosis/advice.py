@@ -9,7 +9,8 @@ import re
 
 FAMILIES = ("gravity_", "integrator_", "frame_")  # of whose words one line speaks
 DO = {
-    "no_centrifugal": "Add −Ω × (Ω × (R + r)), or judge against a scene whose g is the measured one.",
+    "no_centrifugal": "Add −Ω × (Ω × (R + r)). If your g is a measured one, add −Ω × (Ω × r) alone, "
+    "and say `--set site.gravity_is=effective`.",
     "effective_gravity": "If your g is the measured one, say `--set site.gravity_is=effective`; else add the force.",
     "no_tilt": "Add the force's part along y: −Ω² R cos φ sin φ.",
     "no_lift": "Add the force's part along z: Ω² R cos² φ.",

@@ -39,6 +39,8 @@ _EFFECTIVE_G = "effective_gravity"
 _WITHOUT_CHANGE = "no_centrifugal"
 # of a linear motion their quotient alone is known
 _ONE_NUMBER = ("site.gravity", "pendulum.length")
+# numbers of which a motion may show one combination alone: each may be wrong, or both
+_COMBINED = (frozenset(_ONE_NUMBER), frozenset(("site.latitude", "site.rotation_rate")))
 
 
 @dataclass(frozen=True)
@@ -334,9 +336,11 @@ def _either(
 
 def one_of(alternatives: Sequence[Alternative], size_m: float) -> Deviation:
     """Return the cause that one of several alternatives is true."""
-    ids = "|".join(alternative.ids for alternative in alternatives)
-    texts = ", or ".join(alternative.text for alternative in alternatives)
-    return Deviation(ids, f"either {texts}", size_m, EITHER)
+    words = [alternative.ids for alternative in alternatives]
+    texts = [alternative.text for alternative in alternatives]
+    if any(pair.issubset(words) for pair in _COMBINED):
+        texts.append("both" if len(alternatives) == 2 else "several of these")
+    return Deviation("|".join(words), f"either {', or '.join(texts)}", size_m, EITHER)
 
 
 def likelier(other: Explanation, program: Explanation) -> Explanation:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from mistakes import told
 
+from compare.diagnosis.claims import Alternative, one_of
 from compare.diagnosis.hypotheses import Claim, has_few_digits
 from compare.diagnosis.thresholds import FACTOR_DIGITS
 from reference import Scene, load_scene, trajectory
@@ -200,6 +201,21 @@ def test_numbers_that_do_not_predict_are_not_sound() -> None:
 def test_normal_gravity_is_recognised() -> None:
     found = explained(rows("site.gravity=9.80967161366882"))
     assert stages(found) == {"gravity_normal": "input"}
+
+
+@pytest.mark.parametrize(
+    ("words", "end"),
+    [
+        (("site.latitude", "site.rotation_rate"), ", or both"),
+        (("site.gravity", "pendulum.length", "integrator_loose"), ", or several of these"),
+        (("hemisphere", "coriolis_sign"), "or has a wrong coriolis_sign"),
+    ],
+)
+def test_of_numbers_that_act_together_each_may_be_wrong_or_both(
+    words: tuple[str, ...], end: str
+) -> None:
+    alternatives = [Alternative(word, f"has a wrong {word}") for word in words]
+    assert one_of(alternatives, 1.0).text.endswith(end)
 
 
 def test_of_a_turn_alone_no_latitude_is_claimed() -> None:
