@@ -170,3 +170,6 @@ Proof.
   apply derive_eq with (k * (1 - 0)); [ | ring ].
   apply derive_times, derive_sub; [ apply (is_derive_id (K := R_AbsRing)) | apply derive_const ].
 Qed.
+
+Lemma exp_le s t : s <= t -> exp s <= exp t.
+Proof. intros [less | ->]; [ left; apply exp_increasing; assumption | lra ]. Qed.
