@@ -435,3 +435,207 @@ Proof.
 Qed.
 
 End TheoremC.
+
+(** The statement, with everything that it needs. *)
+Theorem theorem_C (Ω c : vec) (γ : R) (r H : R -> vec) (a b : R)
+    (p p' p'' : R -> vec) (w P K_sup T D1 D2 S λm λp : R) :
+  0 <= γ -> 0 < w ->
+  motion Ω c γ r H a b ->
+  (forall s, a <= s <= b -> has_rate p s (p' s)) ->
+  (forall s, a <= s <= b -> has_rate p' s (p'' s)) ->
+  let Kp s := K Ω (p s) (p' s) in
+  let Kp' s := K' Ω (p s) (p' s) (p'' s) in
+  let e s := (r s - p s)%V in
+  let g s := (H s - Kp s)%V in
+  (forall s, a <= s <= b -> `|p s| <= P) ->
+  (forall s, a <= s <= b -> `|Kp s| <= K_sup) ->
+  (forall s, a <= s <= b -> Rabs (τ (p s)) <= T) ->
+  (forall s, a <= s <= b -> `|d1 Ω (p s) (p' s) (Kp s)| <= D1) ->
+  (forall s, a <= s <= b -> `|d2 Ω c γ (p s) (Kp s) (Kp' s)| <= D2) ->
+  (forall s, a <= s <= b -> `|H s| <= S) ->
+  (forall s, a <= s <= b -> w ^ 2 - c · r s <= λm) ->
+  (forall s, a <= s <= b -> c · r s - w ^ 2 <= λp) ->
+  let η_at s := η w (r s) (g s) (e s) in
+  let ē := e_bar Ω c γ w P K_sup D1 D2 (b - a) (η_at a) in
+  forall s, a <= s <= b ->
+  `|e s| <= ē                                                                             (* (4.1) *)
+  /\ η_at s <= (η_at a + (b - a) * source c w K_sup T D1 D2)
+              * exp ((b - a) * μ Ω c γ w P K_sup S λm λp ē).                                (* (4.2) *)
+Proof.
+  intros γ_nonneg w_pos is_motion p_rate p'_rate Kp Kp' e g P_ K_ T_ D1_ D2_ S_ λm_ λp_ η_at ē s s_in. split.
+  - apply (e_le_e_bar Ω c γ r H a b p p' p'' w P K_sup D1 D2); assumption.
+  - apply (theorem_C_proof Ω c γ r H a b p p' p'' w P K_sup T D1 D2 S λm λp); assumption.
+Qed.
+
+(** μ and b only grow with their arguments, so bounds of η(a) and ē may stand for them. *)
+Lemma μ_grows Ω c γ w P K_sup S λm λp ē1 ē2 :
+  0 < w -> 0 <= S -> 0 <= ē1 <= ē2 ->
+  μ Ω c γ w P K_sup S λm λp ē1 <= μ Ω c γ w P K_sup S λm λp ē2.
+Proof.
+  intros w_pos S_nonneg [ē_nonneg ē_le]. apply Rmult_le_compat_r; [ left; apply Rinv_0_lt_compat; lra | ].
+  assert (wē : w * ē1 <= w * ē2) by (apply Rmult_le_compat_l; lra).
+  assert (0 <= w * ē1) by (apply Rmult_le_pos; lra).
+  assert (square : (S + w * ē1) ^ 2 <= (S + w * ē2) ^ 2) by (apply pow_incr; lra).
+  assert (second : (`|c| + K_sup ^ 2) * ē1 <= (`|c| + K_sup ^ 2) * ē2).
+  { apply Rmult_le_compat_l; [ | assumption ]. assert (A := norm_nonneg c). assert (B := pow2_ge_0 K_sup). lra. }
+  assert (Rmax λm (λp + (S + w * ē1) ^ 2) <= Rmax λm (λp + (S + w * ē2) ^ 2)) by (apply Rle_max_compat_l; lra).
+  lra.
+Qed.
+
+(** |g| ≤ (w + K) η (4.9). *)
+Lemma g_le_η Ω r H p p' K_sup w :
+  0 < w -> r · r = 1 -> H · r = 0 ->
+  let e := (r - p)%V in let g := (H - K Ω p p')%V in
+  `|K Ω p p'| <= K_sup -> `|g| <= (w + K_sup) * η w r g e.
+Proof.
+  intros w_pos unit orthogonal e g K_le.
+  assert (K_nonneg := Rle_trans _ _ _ (norm_nonneg _) K_le).
+  apply Rle_trans with (1 := g_le Ω r H p p' K_sup unit orthogonal K_le). fold e g.
+  assert (A : `|g_perp r g| <= ε w r g e) by apply g_le_root_E.
+  assert (B : w * `|e| <= ε w r g e) by (apply we_le_root_E; assumption).
+  assert (C : `|e| <= η w r g e).
+  { apply Rmult_le_reg_l with w; [ assumption | ]. unfold η.
+    replace (w * (ε w r g e / w)) with (ε w r g e) by (field; lra). assumption. }
+  replace ((w + K_sup) * η w r g e) with (ε w r g e + K_sup * η w r g e) by (unfold η; field; lra).
+  apply Rplus_le_compat; [ assumption | apply Rmult_le_compat_l; assumption ].
+Qed.
+
+(** |e| ≤ η. *)
+Lemma e_le_η w r g e : 0 < w -> `|e| <= η w r g e.
+Proof.
+  intros w_pos. apply Rmult_le_reg_l with w; [ assumption | ]. unfold η.
+  replace (w * (ε w r g e / w)) with (ε w r g e) by (field; lra). apply we_le_root_E; assumption.
+Qed.
+
+(** ** The rate needs no polynomial
+
+    λ− = w² + ½|Ω|² + J(0) (4.5), λ+ = |c| − w² (4.6), S = |Ω| + √(|Ω|² + 2(J(0) + |c|)) (4.7). *)
+Definition lambda_minus (Ω : vec) (w J0 : R) : R := w ^ 2 + / 2 * `|Ω| ^ 2 + J0.
+Definition lambda_plus (c : vec) (w : R) : R := `|c| - w ^ 2.
+Definition S_of (Ω c : vec) (J0 : R) : R := `|Ω| + sqrt (`|Ω| ^ 2 + 2 * (J0 + `|c|)).
+
+Section Rate.
+Variables (Ω c : vec) (γ : R) (r H : R -> vec) (t_start t_end J0 w : R).
+Hypothesis γ_nonneg : 0 <= γ.
+Hypothesis is_motion : motion Ω c γ r H t_start t_end.
+Hypothesis J_start : energy Ω c (r t_start) (H t_start) <= J0.
+
+Lemma energy_bound t : t_start <= t <= t_end -> energy Ω c (r t) (H t) <= J0.
+Proof.
+  intros t_in. apply Rle_trans with (2 := J_start).
+  apply (energy_falls Ω c γ r H t_start t_end); assumption.
+Qed.
+
+Lemma cr_le_c t : t_start <= t <= t_end -> c · r t <= `|c|.
+Proof.
+  intros t_in. apply Rle_trans with (1 := dot_upper _ _).
+  rewrite (norm_unit (r t)) by (apply (on_sphere _ _ _ _ _ _ _ is_motion); assumption). lra.
+Qed.
+
+(** c·r = ½|H|² − Ω·H − J(t) ≥ −½|Ω|² − J(0). *)
+Theorem equation_4_5 t : t_start <= t <= t_end -> w ^ 2 - c · r t <= lambda_minus Ω w J0.
+Proof.
+  intros t_in. assert (J := energy_bound t t_in). unfold energy in J. unfold lambda_minus.
+  assert (square := dot_self_nonneg (H t - Ω)).
+  replace ((H t - Ω) · (H t - Ω)) with (H t · H t - 2 * (Ω · H t) + Ω · Ω) in square by vec_ring.
+  assert (Ω_sq : `|Ω| ^ 2 = Ω · Ω) by (rewrite <- norm_sq; ring). lra.
+Qed.
+
+Theorem equation_4_6 t : t_start <= t <= t_end -> c · r t - w ^ 2 <= lambda_plus c w.
+Proof. intros t_in. unfold lambda_plus. assert (A := cr_le_c t t_in). lra. Qed.
+
+(** ½|H|² − |Ω||H| ≤ J(0) + |c|. *)
+Theorem equation_4_7 t : t_start <= t <= t_end -> `|H t| <= S_of Ω c J0.
+Proof.
+  intros t_in. assert (J := energy_bound t t_in). assert (A := cr_le_c t t_in).
+  assert (B := dot_upper Ω (H t)). assert (H_sq := norm_sq (H t)). unfold energy in J. unfold S_of.
+  set (h := `|H t|) in *. set (ω := `|Ω|) in *.
+  assert (square : (h - ω) * (h - ω) <= ω ^ 2 + 2 * (J0 + `|c|)) by (simpl; lra).
+  assert (h - ω <= sqrt (ω ^ 2 + 2 * (J0 + `|c|))); [ | lra ].
+  apply Rle_trans with (Rabs (h - ω)); [ apply Rle_abs | ].
+  rewrite <- sqrt_Rsqr_abs. apply sqrt_le_1_alt. exact square.
+Qed.
+
+End Rate.
+
+(** In scaled time J is h² J, so that λ−, λ+ and S are h² λ−, h² λ+ and h S. *)
+Lemma energy_scaled Ω c r H h :
+  energy (h * Ω) ((h * h)%R * c) r (h * H) = h ^ 2 * energy Ω c r H.
+Proof. unfold energy. unfold_vec. field. Qed.
+
+(** ** From step to step *)
+
+(** √E is a norm of (g, e). *)
+Lemma root_E_add w g1 g2 e1 e2 :
+  0 < w -> sqrt (E w (g1 + g2) (e1 + e2)) <= sqrt (E w g1 e1) + sqrt (E w g2 e2).
+Proof.
+  intros w_pos. set (A := sqrt (E w g1 e1)). set (B := sqrt (E w g2 e2)).
+  assert (A_sq : A * A = E w g1 e1) by (apply sqrt_sqrt, E_nonneg).
+  assert (B_sq : B * B = E w g2 e2) by (apply sqrt_sqrt, E_nonneg).
+  assert (A_nonneg : 0 <= A) by apply sqrt_pos. assert (B_nonneg : 0 <= B) by apply sqrt_pos.
+  assert (G := norm_add g1 g2). assert (F := norm_add e1 e2).
+  assert (G0 := norm_nonneg (g1 + g2)). assert (F0 := norm_nonneg (e1 + e2)).
+  assert (g1_0 := norm_nonneg g1). assert (g2_0 := norm_nonneg g2).
+  assert (e1_0 := norm_nonneg e1). assert (e2_0 := norm_nonneg e2).
+  rewrite <- (sqrt_square (A + B)) by lra. apply sqrt_le_1_alt.
+  assert (mixed : `|g1| * `|g2| + w ^ 2 * (`|e1| * `|e2|) <= A * B).
+  { assert (0 <= w ^ 2 * (`|e1| * `|e2|)) by (apply Rmult_le_pos; [ apply pow2_ge_0 | apply Rmult_le_pos; assumption ]).
+    assert (0 <= `|g1| * `|g2|) by (apply Rmult_le_pos; assumption).
+    assert (0 <= A * B) by (apply Rmult_le_pos; assumption).
+    apply Rsqr_incr_0; [ | lra | assumption ]. unfold Rsqr.
+    replace (A * B * (A * B)) with (A * A * (B * B)) by ring. rewrite A_sq, B_sq. unfold E.
+    assert (S := pow2_ge_0 (w * (`|g1| * `|e2| - `|g2| * `|e1|))). lra. }
+  assert (sum_g : `|g1 + g2| ^ 2 <= (`|g1| + `|g2|) ^ 2) by (apply pow_incr; lra).
+  assert (sum_e : w ^ 2 * `|e1 + e2| ^ 2 <= w ^ 2 * (`|e1| + `|e2|) ^ 2)
+    by (apply Rmult_le_compat_l; [ apply pow2_ge_0 | apply pow_incr; lra ]).
+  replace ((A + B) * (A + B)) with (A * A + B * B + 2 * (A * B)) by ring. rewrite A_sq, B_sq.
+  unfold E at 1. unfold E. lra.
+Qed.
+
+Lemma root_E_small w g e : 0 < w -> sqrt (E w g e) <= `|g| + w * `|e|.
+Proof.
+  intros w_pos. assert (A := norm_nonneg g). assert (B := norm_nonneg e).
+  assert (C : 0 <= w * `|e|) by (apply Rmult_le_pos; lra).
+  rewrite <- (sqrt_square (`|g| + w * `|e|)) by lra. apply sqrt_le_1_alt. unfold E.
+  assert (0 <= `|g| * (w * `|e|)) by (apply Rmult_le_pos; assumption). lra.
+Qed.
+
+(** r and H are continuous and g⊥ is taken along the true r: in physical time η(new) ≤ η + |Δp| + |ΔK|/w (4.8). *)
+Theorem equation_4_8 w r H p_old K_old p_new K_new :
+  0 < w -> r · r = 1 ->
+  η w r (H - K_new) (r - p_new)
+  <= η w r (H - K_old) (r - p_old) + `|p_new - p_old| + `|K_new - K_old| / w.
+Proof.
+  intros w_pos unit. unfold η.
+  apply Rmult_le_reg_r with w; [ assumption | ].
+  replace (ε w r (H - K_new) (r - p_new) / w * w) with (ε w r (H - K_new) (r - p_new)) by (field; lra).
+  replace ((ε w r (H - K_old) (r - p_old) / w + `|p_new - p_old| + `|K_new - K_old| / w) * w)
+    with (ε w r (H - K_old) (r - p_old) + (`|K_new - K_old| + w * `|p_new - p_old|)) by (field; lra).
+  unfold ε.
+  replace (g_perp r (H - K_new)) with (g_perp r (H - K_old) + across r (K_old - K_new))%V
+    by (unfold g_perp, across; vec_ring).
+  replace (r - p_new)%V with ((r - p_old) + (p_old - p_new))%V by vec_ring.
+  apply Rle_trans with (1 := root_E_add _ _ _ _ _ w_pos). apply Rplus_le_compat_l.
+  apply Rle_trans with (1 := root_E_small _ _ _ w_pos).
+  assert (A := across_le r (K_old - K_new) unit).
+  assert (flip : forall u v, `|u - v| = `|v - u|)
+    by (intros u v; rewrite <- norm_opp; f_equal; vec_ring).
+  rewrite (flip p_new), (flip K_new). lra.
+Qed.
+
+(** At the start Δ is the distance of (p, K) from the exact r0, H0, and η = 0. *)
+Lemma η_start w r H : η w r (H - H) (r - r) = 0.
+Proof.
+  replace (H - H)%V with zero by vec_ring. replace (r - r)%V with zero by vec_ring.
+  unfold η, ε. replace (g_perp r zero) with zero by (unfold g_perp; vec_ring).
+  replace (E w zero zero) with 0 by (rewrite E_dot; vec_ring). rewrite sqrt_0. unfold Rdiv. ring.
+Qed.
+
+(** η does not change when time is rescaled: w is h w, g is h g. *)
+Lemma η_scaled h w r g e : 0 < h -> 0 < w -> η (h * w) r (h * g) e = η w r g e.
+Proof.
+  intros h_pos w_pos. unfold η, ε.
+  replace (E (h * w) (g_perp r (h * g)) e) with (h * h * E w (g_perp r g) e)
+    by (rewrite !E_dot; unfold g_perp; vec_ring).
+  rewrite sqrt_mult_alt, sqrt_square by nra. field. lra.
+Qed.
