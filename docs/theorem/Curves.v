@@ -111,14 +111,12 @@ Qed.
 
 Lemma mean_value (f f' : R -> R) a b :
   a < b -> (forall s, a <= s <= b -> is_derive f s (f' s)) ->
-  exists m, a <= m <= b /\ f b - f a = f' m * (b - a).
+  exists m, a < m < b /\ f b - f a = f' m * (b - a).
 Proof.
   intros a_b derivative.
-  destruct (MVT_gen f a b f') as (m & m_in & value).
-  - intros s; rewrite Rmin_left, Rmax_right by lra; intros; apply derivative; lra.
-  - intros s; rewrite Rmin_left, Rmax_right by lra; intros.
-    apply (continuous_of_derive f s (f' s)), derivative; lra.
-  - rewrite Rmin_left, Rmax_right in m_in by lra. exists m; auto.
+  destruct (MVT_cor2 f f' a b a_b) as (m & value & m_in).
+  - intros s s_in. apply is_derive_Reals. auto.
+  - exists m; auto.
 Qed.
 
 Lemma rising (f f' : R -> R) a b :
@@ -127,16 +125,16 @@ Lemma rising (f f' : R -> R) a b :
 Proof.
   intros a_b derivative sign. destruct (Req_dec a b) as [-> | different]; [ lra | ].
   destruct (mean_value f f' a b) as (m & m_in & value); [ lra | auto | ].
-  assert (0 <= f' m * (b - a)) by (apply Rmult_le_pos; [ auto | lra ]). lra.
+  assert (0 <= f' m * (b - a)) by (apply Rmult_le_pos; [ apply sign; lra | lra ]). lra.
 Qed.
 
 Lemma strictly_rising (f f' : R -> R) a b :
   a < b -> (forall s, a <= s <= b -> is_derive f s (f' s)) ->
-  (forall s, a <= s <= b -> 0 < f' s) -> f a < f b.
+  (forall s, a < s <= b -> 0 < f' s) -> f a < f b.
 Proof.
   intros a_b derivative sign.
   destruct (mean_value f f' a b) as (m & m_in & value); auto.
-  assert (0 < f' m * (b - a)) by (apply Rmult_lt_0_compat; [ auto | lra ]). lra.
+  assert (0 < f' m * (b - a)) by (apply Rmult_lt_0_compat; [ apply sign; lra | lra ]). lra.
 Qed.
 
 Lemma falling (f f' : R -> R) a b :
