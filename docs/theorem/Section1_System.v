@@ -50,8 +50,9 @@ Proof.
   unfold H_rate, force. rewrite <- drag.
   replace ((r × (v + Ω × r)) × Ω)%V with ((r · Ω) * (v + Ω × r) - ((v + Ω × r) · Ω) * r)%V by vec_ring.
   replace (v × (v + Ω × r))%V with ((r · v) * Ω - (v · Ω) * r)%V by vec_ring.
-  replace (r × ((c - Ω × (Ω × r) - 2 * (Ω × v) - γ * v - λ * r) + Ω × v))%V
-    with (r × c + (Ω · r) * (Ω × r) - ((r · v) * Ω - (r · Ω) * v) - γ * (r × v))%V by vec_ring.
+  assert (torque : forall A B, (r × ((c - A - 2 * B - γ * v - λ * r) + B)
+    = r × c - r × A - r × B - γ * (r × v))%V) by vec_ring.
+  rewrite torque, (cross_cross r Ω (Ω × r)), (cross_cross r Ω v), dot_cross_self_r.
   rewrite orthogonal. vec_ring.
 Qed.
 
@@ -70,11 +71,15 @@ Proof.
   assert (second := second_equation Ω c γ r v 0 unit rv).
   rewrite <- H_is in second. rewrite <- second.
   generalize (force Ω c γ r v). intros F. unfold tension. clear second. clearbody v.
-  assert (parts : ((v × (v + Ω × r) + r × ((F - 0 * r) + Ω × v)) × r + (H - Ω) × v =
-    (r · r) * (F + Ω × v) - (r · F + r · (Ω × v)) * r + (v × (v + Ω × r)) × r + H × v - Ω × v)%V) by vec_ring.
-  assert (Hv : (H × v = (r · v) * (v + Ω × r) - ((v + Ω × r) · v) * r)%V) by (rewrite H_is; vec_ring).
-  assert (vr : ((v × (v + Ω × r)) × r = (r · v) * (v + Ω × r) - (r · v) * v)%V) by vec_ring.
-  rewrite parts, Hv, vr, unit, rv. vec_ring.
+  assert (rw : r · (v + Ω × r) = 0) by (rewrite dot_add_r, rv, dot_cross_self_r; ring).
+  assert (parts : forall A B w, ((A + r × ((F - 0 * r) + B)) × r + (H - Ω) × w =
+    (r · r) * (F + B) - (r · F + r · B) * r + A × r + H × w - Ω × w)%V) by vec_ring.
+  rewrite parts.
+  assert (Hv : (H × v = - ((v · v + (Ω × r) · v) * r))%V)
+    by (rewrite H_is, cross_cross_l, rv; generalize (Ω × r)%V; vec_ring).
+  rewrite Hv, cross_cross_l, (dot_comm v r), rv, (dot_comm (v + Ω × r)), rw, unit.
+  replace (r · (Ω × v)) with (- ((Ω × r) · v)) by vec_ring.
+  generalize (Ω × r)%V (Ω × v)%V. vec_ring.
 Qed.
 
 (** ** What is kept *)

@@ -50,9 +50,28 @@ Lemma lemma_0_d1 Ω p p' :
   (d1 Ω p p' (K Ω p p') = (/ 2 * τ' p p') * p - τ p * V Ω p p')%V.
 Proof. unfold d1, K, τ', τ, V. apply vec_ext; unfold_vec; field. Qed.
 
+(** K' − K × Ω = (p' + Ω × p) × V + p × (V' + Ω × V), where the first product is V × V = 0. *)
+Lemma K_turns Ω p p' p'' :
+  (K' Ω p p' p'' - K Ω p p' × Ω = p × (V' Ω p' p'' + Ω × V Ω p p'))%V.
+Proof.
+  assert (jacobi : forall u u', (p' × u + p × u' - (p × u) × Ω = (p' + Ω × p) × u + p × (u' + Ω × u))%V)
+    by vec_ring.
+  unfold K', K. rewrite jacobi. fold (V Ω p p'). generalize (V' Ω p' p'') (V Ω p p'). vec_ring.
+Qed.
+
+(** K − Ω + (Ω·p) p = p × p' + τ Ω. *)
+Lemma K_drags Ω p p' : (K Ω p p' - Ω + (Ω · p) * p = p × p' + τ p * Ω)%V.
+Proof. unfold K, V, τ. vec_ring. Qed.
+
 Lemma lemma_0_d2 Ω c γ λ p p' p'' :
   (d2 Ω c γ p (K Ω p p') (K' Ω p p' p'') = p × d Ω c γ λ p p' p'' + (γ * τ p) * Ω)%V.
-Proof. unfold d2, K', K, d, τ, V, V'. vec_ring. Qed.
+Proof.
+  unfold d2. rewrite K_drags.
+  replace (K' Ω p p' p'' - p × c - K Ω p p' × Ω)%V with ((K' Ω p p' p'' - K Ω p p' × Ω) - p × c)%V
+    by (generalize (K' Ω p p' p'') (K Ω p p'); vec_ring).
+  rewrite K_turns. unfold d.
+  generalize (V' Ω p' p'') (Ω × V Ω p p')%V (τ p). vec_ring.
+Qed.
 
 Lemma lemma_0_Kp Ω p p' : K Ω p p' · p = 0.
 Proof. unfold K, V. vec_ring. Qed.

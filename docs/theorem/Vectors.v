@@ -53,6 +53,8 @@ Lemma cross_anti u v : (u × v = - (v × u))%V.                                 
 Lemma dot_cross_self_l u v : u · (u × v) = 0.                                    Proof. vec_ring. Qed.
 Lemma dot_cross_self_r u v : v · (u × v) = 0.                                    Proof. vec_ring. Qed.
 Lemma triple u v w : u · (v × w) = v · (w × u).                                  Proof. vec_ring. Qed.
+Lemma cross_cross u v w : (u × (v × w) = (u · w) * v - (u · v) * w)%V.            Proof. vec_ring. Qed.
+Lemma cross_cross_l u v w : ((u × v) × w = (u · w) * v - (v · w) * u)%V.          Proof. vec_ring. Qed.
 Lemma lagrange u v : (u × v) · (u × v) = (u · u) * (v · v) - (u · v) * (u · v).  Proof. vec_ring. Qed.
 
 (** ** Length *)
