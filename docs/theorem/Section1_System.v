@@ -158,7 +158,7 @@ Proof.
     + apply derive_times, derive_sq, H_eq; auto.
     + apply derive_dot; [ apply rate_const | apply H_eq; auto ].
     + apply derive_dot; [ apply rate_const | apply r_eq; auto ].
-    + simpl. unfold r_rate, H_rate. unfold_vec. field.
+    + simpl. generalize (H_rate Ω c γ (r s) (H s)) (r_rate Ω (r s) (H s)). intros. unfold_vec. field.
   - intros s _. assert (sq := dot_self_nonneg (r_rate Ω (r s) (H s))). nra.
 Qed.
 
