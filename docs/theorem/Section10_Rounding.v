@@ -1,5 +1,5 @@
 (** Section 10 of THEOREM.md: Lemma 10.2, the variable of a series in doubles, with Flocq's model of binary64: rounding to
-    nearest, ties to even, with subnormal numbers and without an overflow. The sums of Lemma 10.3 are in
+    nearest, ties to even, with subnormal numbers and without an overflow. Lemma 10.3 is in
     Section10_Clenshaw. *)
 
 From Coq Require Import Reals Lra Psatz ZArith Lia.

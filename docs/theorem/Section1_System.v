@@ -135,9 +135,9 @@ Proof.
   { unfold r_rate. rewrite lagrange, unit.
     replace ((H - Ω) · r) with (H · r - Ω · r) by vec_ring. rewrite orthogonal. ring. }
   rewrite v_sq.
-  transitivity (- γ * ((H - Ω) · (H - Ω) + (Ω · r) * (H · r - Ω · r))).
-  - unfold r_rate, H_rate. vec_ring.
-  - rewrite orthogonal. ring.
+  assert (terms : forall k, (H - Ω) · (r × c + H × Ω - γ * (H - Ω + k * r)) - c · ((H - Ω) × r)
+    = - γ * ((H - Ω) · (H - Ω) + k * (H · r - Ω · r))) by vec_ring.
+  unfold r_rate, H_rate. rewrite terms, orthogonal. ring.
 Qed.
 
 (** J(t) ≤ J(a) for t ≥ a, with drag as well. *)

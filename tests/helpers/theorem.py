@@ -12,7 +12,7 @@ from pathlib import Path
 THEOREM = Path(__file__).parents[2] / "docs/theorem"
 INSTALL = "apt-get install -y coq libcoq-coquelicot libcoq-flocq"
 LIBRARIES = ("Coquelicot", "Flocq")
-PATIENCE_S = 600
+PATIENCE_S = 600  # a proof that Coq does not finish is refused
 
 
 @dataclass(frozen=True)
