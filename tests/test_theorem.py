@@ -8,6 +8,7 @@ import subprocess
 
 import pytest
 import theorem
+from pages import of_language
 from places import ROOT
 
 TEXT = (ROOT / "reference/enclosure/THEOREM.md").read_text(encoding="utf-8")
@@ -76,6 +77,11 @@ def test_the_theorem_s_table_names_theorems_of_the_files_whose_assumptions_are_p
         assert re.search(rf"^(Theorem|Lemma) {name}\b", SOURCES[file], re.M), (file, name)
     together = re.findall(r"@(\w+)", SOURCES["Assumptions"])
     assert [name for _, name in named] == together
+
+
+def test_the_page_shows_theorem_c_as_it_is_proved():
+    (statement,) = of_language("docs/theorem/README.md", "text")
+    assert statement in SOURCES["Section4_TheoremC"]
 
 
 def test_every_file_is_compiled_by_make():

@@ -2,7 +2,7 @@
     classical logic and functional extensionality. *)
 
 From Foucault Require Import Section1_System Section2_ErrorAndDefect Section3_TheoremN Section4_TheoremC Section4_Steps.
-From Foucault Require Import Section5_TheoremE Section6_Sizes Section7_Tube Section8_Transits Section10_Rounding Section10_Clenshaw Section13_Sections.
+From Foucault Require Import Section5_TheoremE Section6_Sizes Section7_Tube Section8_Transits Section10_Rounding Section10_Clenshaw Section10_Sizes Section13_Sections.
 
 (** The main theorems, one by one. *)
 Print Assumptions newton.
@@ -16,7 +16,7 @@ Print Assumptions equation_7_4.
 Print Assumptions chain_counted.
 Print Assumptions equation_8_10.
 Print Assumptions lemma_10_2.
-Print Assumptions value_is_off.
+Print Assumptions equation_10_3c.
 Print Assumptions lemma_13_4_b.
 
 (** All of them together. *)
@@ -83,6 +83,11 @@ Definition every_theorem :=
    @value_is_off,
    @rate_is_off,
    @variable_is_off,
+   @of_lines_are,
+   @errors_le,
+   @value_at_u,
+   @equation_10_3c,
+   @second_order_of_HALF,
    @lemma_13_1_a,
    @lemma_13_1_b,
    @lemma_13_2,

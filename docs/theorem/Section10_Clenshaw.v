@@ -1,6 +1,6 @@
 (** Section 10 of THEOREM.md: of Lemma 10.3 (Clenshaw's sums) the exact part. What is computed is the exact sum for the
-    coefficients c_k + δ_k, so that the value is off by Σ|δ_k| and the rate by Σ k|δ'_k|; and what û for u costs. That
-    the errors δ_k of the operations of a line add up to (10.3c, d), second orders included, is not here. *)
+    coefficients c_k + δ_k, so that the value is off by Σ|δ_k| and the rate by Σ k|δ'_k|; and what û for u costs. The
+    sizes of the δ_k are in Section10_Sizes; the bound (10.3d) of the rate is in neither. *)
 
 From Coq Require Import Reals Lra Psatz List.
 From Coquelicot Require Import Coquelicot.
