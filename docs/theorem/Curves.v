@@ -130,7 +130,7 @@ Qed.
 
 Lemma strictly_rising (f f' : R -> R) a b :
   a < b -> (forall s, a <= s <= b -> is_derive f s (f' s)) ->
-  (forall s, a < s <= b -> 0 < f' s) -> f a < f b.
+  (forall s, a < s < b -> 0 < f' s) -> f a < f b.
 Proof.
   intros a_b derivative sign.
   destruct (mean_value f f' a b) as (m & m_in & value); auto.

@@ -51,7 +51,10 @@ End Form.
 Theorem lemma_13_2 (F F' : R -> R) δ σ :
   (forall t, 0 <= t <= δ -> is_derive F t (F' t)) -> F 0 = 0 ->
   (forall t, 0 < t <= δ -> 0 < σ * F' t) -> forall t, 0 < t <= δ -> 0 < σ * F t.
-Proof. intros derivative at_0 sign. apply (equation_8_9 F F' 0 δ derivative σ at_0 sign). Qed.
+Proof.
+  intros derivative at_0 sign t t_in.
+  apply (equation_8_9 F F' 0 δ derivative σ at_0); [ intros; apply sign; lra | assumption ].
+Qed.
 
 (** ** Lemma 13.4
 
