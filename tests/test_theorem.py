@@ -33,7 +33,7 @@ def compiled(tmp_path_factory):
     if shutil.which("make") is None:
         pytest.skip("make is not installed")
     build = tmp_path_factory.mktemp("theorem")
-    command = ["make", "-C", theorem.THEOREM, f"BUILD={build}"]
+    command = ["make", "--no-print-directory", "-C", theorem.THEOREM, f"BUILD={build}"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return build, done.stdout
