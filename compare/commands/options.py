@@ -10,7 +10,6 @@ import typer
 
 from reference import InputError, Scene, load_scene
 from reference.commands.terminal import emit, option
-from reference.dataset.place import changes_in, golden_folder
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -91,6 +90,7 @@ def scene_named(word: str, values: Sequence[str]) -> Scene:
     """
     from reference import load
     from reference.dataset.manifest import MANIFEST
+    from reference.dataset.place import golden_folder
 
     try:
         return load_scene(word, values)
@@ -103,6 +103,8 @@ def scene_named(word: str, values: Sequence[str]) -> Scene:
 
 def scene_words(dataset_id: str) -> str:
     """Return the words of a command that name the scene of a dataset, by the dataset's id."""
+    from reference.dataset.place import changes_in
+
     name, _, _ = dataset_id.partition("+")
     scene_id, _, reading = name.partition(".")
     fields = changes_in(dataset_id)
