@@ -13,11 +13,12 @@ from reference import FoucaultError, Scene
 
 from ...candidates.candidate import Candidate, Deviation
 from ...candidates.external import SETTING
-from ..case import UNCORRECTED, Explanation, largest
-from ..claims import loose
+from ..case import AS_IF, EITHER, UNCORRECTED, Explanation, largest
+from ..claims import hedged, loose
 from ..explain import RENAMED, KnownScene
 from ..fitted import readers_of
 from ..stepped import Steps, likely_steps
+from ..thresholds import RIVAL
 from .findings import Experiment, Experiments, Finding
 from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
 
@@ -90,7 +91,7 @@ class Laboratory:
         """
         files = f"the {len(self._runs)} files"
         if not explanations:
-            return f"No known mistake makes {files}: nothing is named."
+            return f"No known mistake makes {files}: of the first one alone is said what it moves like."
         if len(explanations) == 1:
             cause = "one explanation makes" if known else "an integrator is at fault, say"
             return f"Measured: {cause} {files}."
@@ -102,13 +103,17 @@ class Laboratory:
     def _measured_explanation(self, explanations: Sequence[Explanation]) -> Explanation:
         """Return the explanation that is left, in the conventions of the first file.
 
-        It has no causes if several are left.
+        It has no causes if several are left. If none is, what was certain of the first file is what
+        the program moves like.
         """
         first = self._explanation
         ids: set[str] = set().union(*map(_ids, explanations))
         model = first.model if _ids(first) == ids else None
         if len(explanations) == 1:
             (best,) = explanations
+        elif not explanations:
+            certain = [cause for cause in first.causes if cause.stage not in (AS_IF, EITHER)]
+            best = replace(first, causes=tuple(map(hedged, certain)), slip="")
         else:
             best = replace(first, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
         return replace(best, conventions=first.conventions, model=model)
@@ -134,20 +139,26 @@ class Laboratory:
             return []
 
     def _of_integrator(self) -> list[Explanation]:
-        """Return that an integrator is too loose, where another step shows it, or every file's drift does."""
+        """Return that an integrator is too loose, where another step shows it, or every file's drift does.
+
+        With half the step the error of any order changes by half of itself or more. If the whole
+        error is far more than that, it is not the integrator's.
+        """
         first = self._runs[0]
+        error_m = _error_m(first)
         for run in self._runs:
             if run.setting != 1 and len(run.case.rows.times) == len(first.case.rows.times):
-                changed = largest(run.case.rows.positions - first.case.rows.positions)
-                if changed > first.case.enough:
-                    return [_of_loose_integrator(first, changed)]
+                changed_m = largest(run.case.rows.positions - first.case.rows.positions)
+                if changed_m > first.case.enough:
+                    mostly = error_m <= RIVAL * changed_m
+                    return [_of_loose_integrator(first, error_m)] if mostly else []
         try:
             drift = [_drifts(run) for run in self._runs]
         except UNSOLVED:
             return []
         if not all(drift) or len(drift) <= LEAST_RUNS:
             return []
-        return [_of_loose_integrator(first, _error_m(first))]
+        return [_of_loose_integrator(first, error_m)]
 
     def _make(self, experiment: Experiment) -> bool:
         """Make a run; return whether its file is read as the first was."""

@@ -245,6 +245,39 @@ def test_a_mistake_that_nobody_knows_has_no_name(
     assert document["causes"] == [] and document["diagnosis"] is None
 
 
+LINEAR = """
+import math, sys
+x, y, l, latitude, g, rate, end, h = map(float, sys.argv[1:])
+f = 2 * rate * math.sin(math.radians(latitude))
+vx = vy = 0.0
+print("t,x,y")
+for n in range(round(end / h) + 1):
+    if n % round(1 / h) == 0:
+        print(f"{n * h!r},{x!r},{y!r}")
+    vx += h * (-g / l * x + f * vy)
+    vy += h * (-g / l * y - f * vx)
+    x += h * vx
+    y += h * vy
+"""
+
+
+def test_an_integrator_is_not_at_fault_where_another_step_changes_little_of_the_error(
+    foucault: Run, tmp_path: Path
+) -> None:
+    """A linear model without the centrifugal force, by Euler's method: the step is a hundredth of the error."""
+    source = tmp_path / "linear.py"
+    source.write_text(LINEAR)
+    words = "{x0} {y0} {length} {latitude} {gravity} {rotation_rate} {t_end} {setting}"
+    run = shlex.join([sys.executable, str(source)]) + " " + words
+    fields = ("run.t_end=20", "run.grid_step=1", "run.transits=false")
+    options = [word for field in fields for word in ("--set", field)]
+    options += ["--setting", "0.01", "--repeats", "0", "--experiments", "--json"]
+    document = json.loads(foucault("score", "paris", "--run", run, *options)[1])
+    assert "at fault" not in document["experiments"]["text"]
+    causes = {cause["id"] for cause in document["causes"]}
+    assert causes and all(word.startswith("as_if.") for word in causes)
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
