@@ -116,7 +116,7 @@ class Laboratory:
             best = replace(first, causes=tuple(map(hedged, certain)), slip="")
         else:
             best = replace(first, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
-        return replace(best, conventions=first.conventions, model=model)
+        return replace(best, conventions=first.conventions, model=model, next_step="")
 
     def _explanations(self) -> list[Explanation]:
         """Return what makes the files of all runs; where nothing does, with the steps of a method on the sphere."""
