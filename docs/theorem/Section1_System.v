@@ -182,3 +182,32 @@ Proof.
     + assumption.
     + rewrite dot_scale_l, orthogonal. ring.
 Qed.
+
+(** Without drag H·r is kept on the sphere or off it. *)
+Lemma kept_without_drag Ω c r H : r_rate Ω r H · H + r · H_rate Ω c 0 r H = 0.
+Proof. unfold r_rate, H_rate. vec_ring. Qed.
+
+(** ** There are motions: no theorem about them is empty *)
+
+(** At rest in unstable balance, on the axis of rotation. *)
+Lemma rest_is_a_motion γ ω g a b :
+  a <= b -> motion (mkvec 0 0 ω) (mkvec 0 0 g) γ (fun _ => mkvec 0 0 1) (fun _ => zero) a b.
+Proof.
+  intros ab. constructor.
+  - intros. eapply rate_eq. apply rate_const. unfold r_rate. vec_ring.
+  - intros. eapply rate_eq. apply rate_const. unfold H_rate. vec_ring.
+  - exists a. repeat split; try lra; vec_ring.
+Qed.
+
+(** A great circle, without rotation, gravity and drag. *)
+Lemma circle_is_a_motion ω a b :
+  a <= b ->
+  motion zero zero 0 (fun s => mkvec (cos (ω * s)) (sin (ω * s)) 0) (fun _ => mkvec 0 0 ω) a b.
+Proof.
+  intros ab. constructor.
+  - intros. unfold r_rate. components; unfold zero; simpl; auto_derive; auto; ring.
+  - intros. eapply rate_eq. apply rate_const. unfold H_rate. vec_ring.
+  - exists a. split; [ lra | ]. split; unfold_vec.
+    + assert (one := sin2_cos2 (ω * a)). unfold Rsqr in one. lra.
+    + ring.
+Qed.

@@ -467,7 +467,7 @@ Proof.
   - apply (theorem_C_proof Ω c γ r H a b p p' p'' w P K_sup T D1 D2 S λm λp); assumption.
 Qed.
 
-(** μ and b only grow with their arguments, so bounds of η(a) and ē may stand for them. *)
+(** μ grows with ē, so a bound of ē may stand for it. *)
 Lemma μ_grows Ω c γ w P K_sup S λm λp ē1 ē2 :
   0 < w -> 0 <= S -> 0 <= ē1 <= ē2 ->
   μ Ω c γ w P K_sup S λm λp ē1 <= μ Ω c γ w P K_sup S λm λp ē2.
@@ -562,6 +562,22 @@ End Rate.
 Lemma energy_scaled Ω c r H h :
   energy (h * Ω) ((h * h)%R * c) r (h * H) = h ^ 2 * energy Ω c r H.
 Proof. unfold energy. unfold_vec. field. Qed.
+
+Lemma S_scaled Ω c J0 h : 0 < h -> S_of (h * Ω) ((h * h)%R * c) (h ^ 2 * J0) = h * S_of Ω c J0.
+Proof.
+  intros h_pos. unfold S_of. rewrite !norm_scale, !Rabs_pos_eq by nra.
+  replace ((h * `|Ω|) ^ 2 + 2 * (h ^ 2 * J0 + h * h * `|c|))
+    with (h * h * (`|Ω| ^ 2 + 2 * (J0 + `|c|))) by ring.
+  rewrite sqrt_mult_alt, sqrt_square by nra. ring.
+Qed.
+
+Lemma lambda_minus_scaled Ω w J0 h :
+  0 < h -> lambda_minus (h * Ω) (h * w)%R (h ^ 2 * J0) = h ^ 2 * lambda_minus Ω w J0.
+Proof. intros h_pos. unfold lambda_minus. rewrite norm_scale, Rabs_pos_eq by lra. field. Qed.
+
+Lemma lambda_plus_scaled c w h :
+  0 < h -> lambda_plus ((h * h)%R * c) (h * w)%R = h ^ 2 * lambda_plus c w.
+Proof. intros h_pos. unfold lambda_plus. rewrite norm_scale, Rabs_pos_eq by nra. ring. Qed.
 
 (** ** From step to step *)
 
