@@ -192,8 +192,9 @@ def available(method: Method) -> str | None:
     absent = missing(method.requires)
     if not absent:
         return None if method.native is None else method.native.missing
-    advice = install_command(absent[0], method.extra or "")
-    return f"not installed ({', '.join(absent)}): {advice}"
+    command = install_command(absent[0], method.extra or "")
+    advice = f": {command}" if command else ""
+    return f"not installed ({', '.join(absent)}){advice}"
 
 
 def outcome(problem: Problem, states: Array, *, reason: str = "", **fields: Any) -> RunOutcome:

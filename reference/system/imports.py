@@ -119,8 +119,9 @@ def needed(module: str, extra: str, field: str, purpose: str, instead: str = "")
 
 
 def install_command(module: str, extra: str) -> str:
-    """Return the command that installs a module, which an extra has; "" for the base install."""
-    return _BY_CONDA.get(module, f"pip install 'foucault-reference[{extra}]'")
+    """Return the command that installs a module: by conda, or with its extra; "" if it has neither."""
+    by_pip = f"pip install 'foucault-reference[{extra}]'" if extra else ""
+    return _BY_CONDA.get(module, by_pip)
 
 
 def switched_off(modules: Iterable[str]) -> str | None:

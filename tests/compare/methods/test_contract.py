@@ -14,6 +14,7 @@ from compare.methods import METHODS
 from compare.methods.method import Family, Method, available
 from compare.methods.rhs.problem import suited
 from reference import InputError
+from reference.system.imports import install_command
 
 # looser than the tight end of the ladder, which would take longer than a test may
 SETTINGS = {"heyoka_real": 160, "mpmath_odefun": 113}
@@ -96,7 +97,7 @@ def test_a_declaration_is_complete(name):
     assert len(method.ladder) >= 2
     finer = method.setting == "precision"
     assert list(method.ladder) == sorted(method.ladder, reverse=not finer)
-    assert not method.requires or method.extra
+    assert all(install_command(name, method.extra or "") for name in method.requires)
 
 
 @pytest.mark.parametrize(

@@ -58,9 +58,10 @@ def test_every_night_all_commands_run_in_a_base_install():
     jobs = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))[
         "jobs"
     ]
-    *_, install, run = jobs["base"]["steps"]
+    *_, install, run, run_without_heyoka = jobs["base"]["steps"]
     assert install["run"].endswith("pip install .")  # no extra
     assert (ROOT / run["run"].split()[-1]).is_file()
+    assert run_without_heyoka["run"].endswith(f"uninstall -y heyoka && {run['run']}")
 
 
 def test_the_workflow_of_the_project_itself_calls_what_there_is():
@@ -71,7 +72,7 @@ def test_the_workflow_of_the_project_itself_calls_what_there_is():
     assert set(jobs) == {"lint", "tests", "bytes"}
     assert jobs["bytes"]["strategy"]["matrix"]["machine"] == ["ubuntu-24.04", "ubuntu-24.04-arm"]
     commands = [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
-    targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
+    targets = re.findall(r"^([\w./-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
     nightly = yaml.safe_load((ROOT / ".github/workflows/nightly.yml").read_text(encoding="utf-8"))[
         "jobs"
     ]

@@ -257,7 +257,9 @@ def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):
     with pytest.raises(KeyError, match="no column 'w'"):
         golden.grid["w"]
     assert golden.grid.bound("t") == [0] * 6
-    with pytest.raises(KeyError, match="no bound of 'w'; there are t, x, y, z, vx, vy, vz"):
+    with pytest.raises(
+        KeyError, match="no bound for 'w'; there are bounds for t, x, y, z, vx, vy, vz"
+    ):
         golden.grid.bound("w")
     assert golden.decimals("vx") == golden.grid.decimals("vx")
     assert golden.path.name == "paris"
@@ -288,7 +290,7 @@ def test_a_dataset_of_a_function_alone_says_that_it_lists_no_sections():
 def test_a_table_without_rows_has_no_bounds_and_no_other_columns_for_that():
     transits = load("creeping").transits
     assert transits.bound("x") == transits.bound("t") == transits.exact("x") == []
-    with pytest.raises(KeyError, match="no bound of 'w'; there are t"):
+    with pytest.raises(KeyError, match="no bound for 'w'; there are bounds for t"):
         transits.bound("w")
 
 

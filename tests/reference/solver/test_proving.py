@@ -63,7 +63,7 @@ def test_a_zero_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(
         moved = with_times(proved, word, [t + way * off * (i == k) for i, t in enumerate(times)])
         if not seen:
             with pytest.raises(
-                IntegrationError, match=f"does not find {name} {k + 1} of the proof"
+                IntegrationError, match=f"did not find {name} {k + 1}, which the proof has"
             ):
                 guarded(moved, pilot)
             continue
@@ -75,14 +75,14 @@ def test_a_zero_may_be_off_by_what_a_run_in_double_cannot_see_and_no_more(
 def test_another_direction_is_refused(proved, pilot, word, name):
     first, second, *others = proved.zeros[word].directions
     assert guarded(proved, pilot).guard.number == "double"
-    with pytest.raises(IntegrationError, match=f"does not find {name} 2"):
+    with pytest.raises(IntegrationError, match=f"did not find {name} 2"):
         guarded(changed(proved, word, directions=[first, -second, *others]), pilot)
 
 
 @KINDS
 def test_zeros_in_another_order_are_refused(proved, pilot, word, name):
     first, second, third, *others = proved.zeros[word].table.exact("t")
-    with pytest.raises(IntegrationError, match=f"does not find {name} 2"):
+    with pytest.raises(IntegrationError, match=f"did not find {name} 2"):
         guarded(with_times(proved, word, [third, second, first, *others]), pilot)
 
 

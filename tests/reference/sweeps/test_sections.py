@@ -138,7 +138,7 @@ def test_a_motion_that_stays_in_the_gate_fails_alone_and_says_so(engine):
     )
     swept = sweep(scene, ["site.latitude=0,45"], engine=engine, workers=1)
     assert swept["status"].tolist() == ["doubtful", "ok"]
-    assert "the motion stays in this section" in swept["reason"][0]
+    assert "the motion never leaves this section" in swept["reason"][0]
     assert swept["gate 0@0: passages"][0] == 0
     assert np.isnan(swept["gate 0@0: t_error_s"][0])
     assert np.isnan(swept["frequency_hz"][0])
