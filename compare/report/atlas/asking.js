@@ -215,9 +215,16 @@ function knownBy({ bound_m: bound }) {
 
 function furtherSteps(result) {
   if (result.verdict !== "disagrees" || result.explained) return [];
-  const command = "foucault score pendulum.toml FILE";
-  const nothing = "This page finds no reason in the clock, the unit or the axes.";
-  return [`${nothing} Save pendulum.toml below; the command looks further: ${command}`];
+  const { site } = sceneOf(pendulum.texts, fields);
+  const steps = [
+    "The page finds nothing wrong with the clock, the unit and the axes. The equations, the method and the step are not tried here.",
+    "Halve your step and judge again: what shrinks is the error of your method, what stays is in your equations.",
+  ];
+  if (site.gravity_is === "ellipsoid") {
+    steps.push("Does your program leave out the centrifugal force? Choose effective under Place: if most of the error goes, that is it.");
+  }
+  const command = "foucault score pendulum.toml mine.csv";
+  return [...steps, `Or save pendulum.toml below: ${command} names the mistake. The command needs Python.`];
 }
 
 async function judgeFiles(chosen) {
