@@ -32,7 +32,7 @@ class _ApproximationClaim(Claim):
 
     @property
     def cause(self) -> Deviation:
-        """What is said of it."""
+        """The cause, with the title of the approximation."""
         text = f"solves {self.motion.title} ({self.motion.where}) instead of the full equations"
         return Deviation(self.motion.id, text, self.costs_m, "model")
 

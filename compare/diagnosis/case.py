@@ -17,7 +17,7 @@ from .phasors import ComplexArray, sinc
 from .programs import NAMES, Program, SphericalPendulum
 from .thresholds import FINEST, RIVAL, ROUNDED
 
-_SLOWEST = 1e-6  # rad/s: size of the rotation rate where there is none
+_SLOWEST = 1e-6  # rad/s: used as the scale of the rotation rate where the scene has none
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
 # conventions that a model may go with

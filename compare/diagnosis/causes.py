@@ -14,7 +14,7 @@ from .case import FileCase
 from .phasors import METHODS
 from .programs import Program
 
-NAMED = 0.3  # decades by which a named cause has to lower what is left, to be believed
+NAMED = 0.3  # decades by which a named cause has to lower the residual, to be believed
 RARE = 0.5  # one that is met less often
 FITTED = 0.7  # and a fitted number
 PRINTED_DIGITS = 12  # of a fitted number at most
@@ -111,7 +111,7 @@ class Cause:
         group: causes of one group exclude each other.
         text: the end of the sentence "Your program …"; {value} stands for a fitted number.
         change: gives the program with it.
-        cost: decades by which it has to lower what is left.
+        cost: decades by which it has to lower the residual.
         free: the field of `Program` whose value is fitted, or "".
         stage: gravity, model, input, release, frame, clock or integrator.
     """

@@ -67,7 +67,7 @@ def tested(claim: Claim, part: Deviation, without_m: float) -> Deviation | None:
     Args:
         claim: the explanation with it.
         part: a cause or a convention.
-        without_m: root mean square in m that is left without it, everything else fitted again.
+        without_m: root mean square of the residual in m without it, everything else fitted again.
     """
     if not claim.leaves_little or not claim.is_harmless:
         return None
@@ -77,7 +77,7 @@ def tested(claim: Claim, part: Deviation, without_m: float) -> Deviation | None:
 def by_need(part: Deviation, need: float) -> Deviation | None:
     """Return a part of an explanation as its need allows it to be said; None if it is not needed.
 
-    `need` says how many times as much is left without it.
+    `need` says how many times the residual grows without it.
     """
     if need < RIVAL:
         return None
@@ -160,7 +160,7 @@ class _AmongRivals:
         best: the hypothesis.
         rivals: of it.
         reported: the same without what is within the tolerance.
-        needs: how many times as much is left without each of its causes, by word.
+        needs: how many times the residual grows without each of its causes, by word.
     """
 
     best: Hypothesis
@@ -203,7 +203,7 @@ class _AmongRivals:
         return hedged(cause)
 
     def _need(self, cause: Deviation) -> float:
-        """Return how many times as much is left without a cause."""
+        """Return how many times the residual grows without a cause."""
         is_renamed = cause.id == _EFFECTIVE_G and cause.id not in self.needs
         return self.needs[_WITHOUT_CHANGE if is_renamed else cause.id]
 
@@ -252,7 +252,7 @@ class _AmongRivals:
     def _words(self) -> dict[Hypothesis, frozenset[str]]:
         """The words of the hypothesis and of its rivals.
 
-        Of a g that is effective in all, and more in some, that it is effective.
+        If all of them take g as effective, and some say more about it, only "effective" is kept.
         """
         words = {one: one.words for one in (self.best, *self.rivals)}
         effective = {_WITHOUT_CHANGE, _EFFECTIVE_G}
@@ -282,7 +282,7 @@ class _AmongRivals:
 
     @property
     def _alternatives(self) -> list[Alternative]:
-        """What differs between the hypothesis and its rivals."""
+        """The causes by which the hypothesis and its rivals differ."""
         alternatives = [
             _alternative(one, words - self._common) for one, words in self._words.items()
         ]

@@ -225,7 +225,7 @@ class _ModelPart:
         return replace(program, kind=self.kind)
 
     def deviation(self, case: FileCase, reading: CauseReading, size_m: float) -> Deviation:
-        """Return what is said of it; it moves the bob by a size."""
+        """Return it as a finding; it moves the bob by a size in m."""
         word, text = MODELS[self.kind]
         return Deviation(word, text, size_m, self.stage)
 
@@ -249,7 +249,7 @@ class _CausePart:
         return changed.changed(**{self.cause.free: reading.value(self.cause)})
 
     def deviation(self, case: FileCase, reading: CauseReading, size_m: float) -> Deviation:
-        """Return what is said of it; beside the causes before it, it moves the bob by a size."""
+        """Return it as a finding; beside the causes before it, it moves the bob by a size in m."""
         cause = self.cause
         if size_m <= case.enough:
             # another cause, put right before it, may have made it small

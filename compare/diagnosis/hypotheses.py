@@ -56,19 +56,19 @@ class Claim:
 
     @property
     def rest(self) -> float:
-        """Root mean square in m of what is left; smaller residuals than rounding are equal."""
+        """Root mean square of the residual in m; residuals below rounding count as equal."""
         size = rms(self.left)
         return max(size, self.case.resolution) if math.isfinite(size) else math.inf
 
     @property
     def largest_m(self) -> float:
-        """Largest distance in m of what is left."""
+        """Largest residual in m."""
         size = largest(self.left)
         return size if math.isfinite(size) else math.inf
 
     @property
     def explains(self) -> bool:
-        """Whether what is left is within the tolerance, or the rounding of the file."""
+        """Whether the residual is within the tolerance, or within the rounding of the file."""
         return self.largest_m <= self.case.enough
 
     @property
@@ -83,7 +83,7 @@ class Claim:
 
     @property
     def is_harmless(self) -> bool:
-        """Whether what is left is in no column more than a few times the file's own error there."""
+        """Whether the residual of each column is at most a few times the file's own error there."""
         errors = np.abs(self.case.rows.positions - self.case.truth).max(axis=0)
         own = np.maximum(errors, self.case.resolution)
         return bool((np.abs(self.left).max(axis=0) <= RIVAL * own).all())
@@ -94,7 +94,7 @@ class Claim:
         return 0
 
     def foreseen(self, count: int) -> Array:
-        """Return what is left in m if the numbers are fitted to the first `count` rows, shape as `left`."""
+        """Return the residual in m if the numbers are fitted to the first `count` rows, shape as `left`."""
         return self.left
 
     def predicts(self) -> bool:
@@ -278,7 +278,7 @@ class Hypothesis(Claim):
         return CATALOGUE * self.undrifted.rest < CHANCE * other.undrifted.rest
 
     def need_of(self, word: str) -> float:
-        """Return how many times as much is left without a cause, everything else fitted again."""
+        """Return how many times the residual grows without a cause, everything else fitted again."""
         without = self.without(word)
         if self.takes_from(without):
             return without.undrifted.rest / self.undrifted.rest
@@ -315,7 +315,7 @@ class Hypothesis(Claim):
         return len(self.numbers)
 
     def foreseen(self, count: int) -> Array:
-        """Return what is left in m if the numbers are fitted to the first `count` rows."""
+        """Return the residual in m if the numbers are fitted to the first `count` rows."""
         names = [cause.free for cause in self.numbers]
         program = adjusted_to(self.case.part(count), self.reading.program, names)
         return self.case.left(program)
@@ -345,7 +345,7 @@ def without_needless(best: Hypothesis) -> Hypothesis:
 
 
 def worth_saying(best: Hypothesis) -> tuple[Hypothesis, dict[str, float]]:
-    """Return a hypothesis without what is within the tolerance, and how many times as much is left without the rest."""
+    """Return a hypothesis without causes within the tolerance, and the residual's growth without each other one."""
     while best.words:
         slight = [word for word in sorted(best.words) if not best.is_worth_saying(word)]
         if not slight:

@@ -2,7 +2,7 @@
 
 Every combination of causes is a point in the space of `theta`; its distance from the fitted point, weighed by how the
 rows answer to each number, is the root mean square in m that it would leave. The search keeps the best combinations of
-one, two, … causes. A cause counts only if it lowers what is left by its cost, so that of two that explain as much the
+one, two, … causes. A cause counts only if it lowers the residual by its cost, so that of two that explain as much the
 one that contains the other loses.
 """
 
@@ -98,7 +98,7 @@ class Reader:
         for _ in range(MOST):
             longer = search.longer(beam)
             best += longer[:BEAM]
-            # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
+            # of two mistakes as large as each other, neither lowers the residual by much: those that lower it at all
             others = sorted(longer[BEAM:], key=lambda reading: reading.rest)
             beam = [*longer[:BEAM], *others[:ASIDE]]
             if not beam:
@@ -211,7 +211,7 @@ class Reader:
         off = left.ravel()
 
         def rest(*numbers: int) -> float:
-            """Return what is left where some numbers of theta are fitted."""
+            """Return the residual where some numbers of theta are fitted."""
             slopes = self.fit.slopes[: len(off), numbers]
             return float(np.linalg.norm(off - slopes @ best_change(slopes, off)))
 

@@ -42,7 +42,7 @@ def of_slip(
         case: some of the rows.
         rows: all of them.
         constants: of the scene's force, as floats.
-        without_m: root mean square in m that is left without a slip.
+        without_m: root mean square of the residual in m without a slip.
     """
     best = _simplest(list(_claims(case.in_the_plane(), rows, constants)))
     if best is None:
@@ -156,7 +156,7 @@ class _SlipClaim(Claim):
         return len(self.force.coefficients)
 
     def foreseen(self, count: int) -> Array:
-        """Return what is left in m if the numbers are fitted to the first `count` rows."""
+        """Return the residual in m if the numbers are fitted to the first `count` rows."""
         return self._fitted_to(count).left
 
     @property
@@ -173,7 +173,7 @@ class _SlipClaim(Claim):
 
     @property
     def sentence(self) -> str:
-        """What is said of it."""
+        """The sentence that names the wrong terms of the force."""
         k = self.force.k
         model = "linear model" if self.force.kind == "linear" else "model"
         reading = "" if k.pull[1] or not k.rate else ", with g as the effective gravity"
@@ -182,7 +182,7 @@ class _SlipClaim(Claim):
         return f"its accelerations differ from the {model}'s{reading}: {terms}{work}"
 
     def _term(self, place: Place) -> str:
-        """Return what is said of a term."""
+        """Return the words for a wrong term."""
         equation, term = place
         word = list(TERMS)[term]
         name = "the constant term" if word == "1" else f"the term with {word}"

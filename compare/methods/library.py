@@ -71,7 +71,7 @@ class Library:
 
 
 def compiler() -> list[str] | None:
-    """Return the command of the C++ compiler as words; None if there is none."""
+    """Return the command line of the C++ compiler, split into words; None if no compiler is found."""
     words = shlex.split(os.environ.get("CXX", "")) or ["c++"]
     return words if shutil.which(words[0]) else None
 

@@ -36,7 +36,7 @@ def code(*names: str) -> str:
     return "\n".join(map(source, (*WORKERS["solving"], *names)))
 
 
-def node(script: str, document: dict[str, Any]) -> Any:
+def node(script: str, document: Any) -> Any:
     """Return what a script prints as JSON, given a document on its standard input."""
     done = subprocess.run(
         ["node", "-e", script],

@@ -103,8 +103,8 @@ class Laboratory:
     def _measured_explanation(self, explanations: Sequence[Explanation]) -> Explanation:
         """Return the explanation that is left, in the conventions of the first file.
 
-        It has no causes if several are left. If none is, what was certain of the first file is what
-        the program moves like.
+        If several are left, it names no cause. If none is left, the certain causes of the first
+        file become what the program moves like.
         """
         first = self._explanation
         ids: set[str] = set().union(*map(_ids, explanations))

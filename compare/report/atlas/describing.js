@@ -127,7 +127,7 @@ function turnedCompass(text) {
   return plainDecimal(whole, ...more);
 }
 
-// A mantissa with so many digits after the point, as text.
+// An integer as a decimal with the given number of digits after the point.
 function plainDecimal(mantissa, digits) {
   const sign = mantissa < 0n ? "-" : "";
   const text = String(mantissa < 0n ? -mantissa : mantissa).padStart(digits + 1, "0");

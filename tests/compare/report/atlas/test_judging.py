@@ -10,6 +10,7 @@ import subprocess
 import numpy as np
 import pytest
 from dropped import csv, trajectories
+from page_motion import node
 
 import reference
 from compare import judge
@@ -51,14 +52,7 @@ def run(golden, cases=(), headers=()):
     ]
     truth = page_data(golden, golden_function(golden))
     document = {"truth": truth, "words": truth["words"], "cases": asked, "headers": list(headers)}
-    done = subprocess.run(
-        ["node", "-e", script],
-        input=json.dumps(document, default=plain),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return json.loads(done.stdout)
+    return node(script, document)
 
 
 def printed(numbers):
@@ -67,14 +61,7 @@ def printed(numbers):
         source("drawing.js")
         + 'console.log(JSON.stringify(JSON.parse(require("fs").readFileSync(0)).map(small)));'
     )
-    done = subprocess.run(
-        ["node", "-e", script],
-        input=json.dumps(numbers),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return json.loads(done.stdout)
+    return node(script, numbers)
 
 
 def test_a_number_of_the_page_is_its_value_to_three_digits():
