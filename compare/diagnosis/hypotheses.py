@@ -314,6 +314,11 @@ class Hypothesis(Claim):
         """How many numbers were fitted that the rows do not show by themselves."""
         return len(self.numbers)
 
+    @property
+    def is_sound(self) -> bool:
+        """Whether its numbers are certain; not if its swing is too fast for other models to be run beside it."""
+        return super().is_sound and not self.case.pendulum.is_too_fast(self.reading.program.theta())
+
     def foreseen(self, count: int) -> Array:
         """Return the residual in m if the numbers are fitted to the first `count` rows."""
         names = [cause.free for cause in self.numbers]

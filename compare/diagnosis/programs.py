@@ -332,13 +332,16 @@ class SphericalPendulum:
     square: tuple[float, float, float, float]
     fastest: float = math.inf
 
-    def rows(self, theta: Array, times: Array, columns: int) -> Array:
-        """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
+    def is_too_fast(self, theta: Array) -> bool:
+        """Return whether a motion is so fast that it is not run."""
         fastest_turn = float(np.abs(theta[0:3]).max())
         fastest_swing = math.sqrt(float(np.abs(theta[3:6]).max()))
-        rate = fastest_turn + abs(theta[6]) + fastest_swing
+        return bool(fastest_turn + abs(theta[6]) + fastest_swing > self.fastest)
+
+    def rows(self, theta: Array, times: Array, columns: int) -> Array:
+        """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
         reachable = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
-        if not reachable or not np.isfinite(theta).all() or rate > self.fastest:
+        if not reachable or not np.isfinite(theta).all() or self.is_too_fast(theta):
             return np.full((len(times), columns), np.nan)
         try:
             from_release = times if times[0] == 0 else np.concatenate([[0.0], times])

@@ -192,7 +192,7 @@ class _SlipClaim(Claim):
         return f"{where} is {value} where the model has {right + 0.0:.6g}"
 
     def _does_work(self) -> bool:
-        """Return whether the wrong terms do work along the motion."""
+        """Return whether more of the wrong terms does work along the motion than not."""
         times = self.case.rows.times
         velocities = np.gradient(self.case.rows.plane, times, axis=0).T
         basis = np.vstack([np.ones(len(times)), self.case.rows.plane.T, velocities])
@@ -200,6 +200,5 @@ class _SlipClaim(Claim):
         for (equation, term), coefficient in self.force.coefficients.items():
             errors[equation] += coefficient * basis[term]
         power = np.mean(np.sum(errors * velocities, axis=0))
-        return bool(
-            RIVAL * abs(power) > 2 * root_mean_square(errors) * root_mean_square(velocities)
-        )
+        most = root_mean_square(errors) * root_mean_square(velocities)
+        return bool(math.sqrt(2) * abs(power) > most)

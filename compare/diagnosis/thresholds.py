@@ -23,7 +23,6 @@ NEEDED = 10.0
 
 # Times a residual: what is no more than this is about as good. So are two explanations; one without a cause, which then
 # is not needed; the last rows, predicted from the first; and a column that an explanation leaves worse than it was.
-# Also how near a fall is to g, how much a motion grows, and the share of an error's power that does work.
 # tests/compare/diagnosis/test_claims.py: test_a_map_of_a_column_that_is_hardly_needed_is_not_certain;
 # tests/compare/diagnosis/test_false_causes.py: test_no_cause_is_stated_that_spoils_a_right_column
 RIVAL = 3.0

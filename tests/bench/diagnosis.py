@@ -316,6 +316,10 @@ def records(corpus: str, seed: int, count: int) -> Iterator[dict[str, Any]]:
         compiler = shutil.which("cc")
         assert compiler is not None
         subprocess.run([compiler, "-O2", "-o", str(program), str(source), "-lm"], check=True)
+        if corpus == "advice":
+            for number in range(count):
+                yield advised(f"{seed}-{number}", case(number, seed), program)
+            return
         most = 3 if corpus == "generated" else 0
         for name, made, (times, q) in generated(program, seed, range(count), most):
             if corpus == "smooth":
@@ -334,6 +338,34 @@ def records(corpus: str, seed: int, count: int) -> Iterator[dict[str, Any]]:
                 made.matters(program),
                 made.wrong,
             )
+
+
+def advised(name: str, made: Any, program: Path) -> dict[str, Any]:
+    """Return how a program is corrected as it is told, until it agrees or no word is of use.
+
+    What is certain is corrected first, then what is one of several, then what its motion is like.
+    """
+    told_each_time: list[list[str]] = []
+    text: list[str] = []
+    begun = time.process_time()
+    grade = "stuck"
+    while grade == "stuck":
+        found = made.told(*made.rows(program))
+        if found.agrees:
+            grade = "agrees"
+            break
+        causes = found.explanation.causes if found.explanation else ()
+        like = {cause.id.removeprefix("as_if.") for cause in causes}
+        orders = (found.words, found.alternatives, like)
+        tried = [made.without(words) for words in orders]
+        mended = next((each for each in tried if len(each.parts) < len(made.parts)), None)
+        told_each_time.append(sorted(found.words | found.alternatives | like))
+        text = [] if found.explanation is None else list(found.explanation.lines())
+        if mended is None:
+            break
+        made = mended
+    return {"id": name, "true": sorted(made.true), "said": told_each_time, "wrong": [], "grade": grade,
+            "text": [] if grade == "agrees" else text, "cpu_s": round(time.process_time() - begun, 3)}  # fmt: skip
 
 
 def wild(name: str) -> dict[str, Any]:
@@ -370,7 +402,7 @@ def summary(rows: list[dict[str, Any]]) -> str:
     """Return a few lines on what was said."""
     grades = {
         grade: sum(row["grade"] == grade for row in rows)
-        for grade in ("whole", "either", "part", "silent", "agrees")
+        for grade in ("whole", "either", "part", "silent", "agrees", "stuck")
     }
     wrong = {row["id"]: row["wrong"] for row in rows if row["wrong"]}
     spent = [row["cpu_s"] for row in rows]
@@ -388,7 +420,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
         "corpus",
-        choices=("generated", "right", "smooth", "clocks", "columns", "loops", "loose", "wild"),
+        choices=(
+            "generated",
+            "advice",
+            "right",
+            "smooth",
+            "clocks",
+            "columns",
+            "loops",
+            "loose",
+            "wild",
+        ),
     )
     parser.add_argument("seed", type=int)
     parser.add_argument("count", type=int)

@@ -111,6 +111,16 @@ def test_of_few_rows_nothing_fitted_is_certain() -> None:
     assert "site.gravity" not in found.words
 
 
+@pytest.mark.parametrize("setting", ["site.gravity=9.81", "release.x=0.6"])
+def test_a_swing_too_fast_for_other_models_to_be_run_is_not_certain(setting: str) -> None:
+    """Times in minutes, rows half a swing apart: they fit a swing 60 times as fast, or nearly, in a linear model."""
+    times = np.arange(0, 1700, 8.5)
+    long = "run.t_end=2000"
+    found = explained(rows(long, setting, times=times), times / 60, paris(long))
+    assert found.explanation.causes
+    assert found.words == set()
+
+
 def test_what_is_hardly_needed_is_not_certain() -> None:
     """A latitude whose effect is a few times that of a smooth error of another origin."""
     wave = 2e-6 * np.sin(0.05 * TIMES) * (TIMES / 600) ** 2
