@@ -30,7 +30,7 @@ _SHOWN = {
     "swing_hz": ("frequency", "Hz"),
     "precession_deg_per_h": ("precession", "°/h"),
     "transits": ("transits", ""),
-    "max_angle_deg": ("angle", "°"),
+    "max_angle_deg": ("largest angle", "°"),
     "position_error_m": ("estimated", "error, m"),
 }
 _OF_SECTION = {
