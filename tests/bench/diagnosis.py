@@ -1,7 +1,8 @@
-"""What the diagnosis says of drawn files: python tests/bench/diagnosis.py CORPUS SEED COUNT [--out FILE].
+"""What the diagnosis says of drawn files: python tests/bench/diagnosis.py CORPUS SEED COUNT [--out FILE] [--ulp].
 
 Each corpus draws files whose true causes are known, from a seed. A line of JSON is written for each, and a summary at
-the end: how many are identified, how many as "either … or …", how many get no cause, and every false claim.
+the end: how many are identified, how many as "either … or …", how many get no cause, and every false claim. With --ulp
+each number of a file is moved to a neighbouring double, or not: the text should be the same.
 """
 
 # ruff: noqa: E501
@@ -38,6 +39,7 @@ from mistakes import case, one_word_for_one_motion, told  # noqa: E402
 from reference import Scene, load_scene, trajectory  # noqa: E402
 
 Columns = dict[str, np.ndarray]
+ULP = "--ulp" in sys.argv
 # the same motion, or words for one habit
 ONE = {"effective_gravity": "no_centrifugal", "uniform_gravity": "no_centrifugal"}
 
@@ -221,6 +223,15 @@ def alternatives(explanation: Any) -> list[list[str]]:
     return [part.id.split("|") for part in explanation.causes if "|" in part.id]
 
 
+def nudged(columns: Columns) -> Columns:
+    """Return columns of which each number is the same, or one of its two neighbours."""
+    draw = np.random.default_rng(1)
+    return {
+        name: column + draw.integers(-1, 2, len(column)) * np.spacing(column)
+        for name, column in columns.items()
+    }
+
+
 def record(
     name: str,
     scene: Scene,
@@ -233,6 +244,8 @@ def record(
 ) -> dict[str, Any]:
     """Return what is said of a file, and how true it is."""
     begun = time.process_time()
+    if ULP:
+        q = nudged(q)
     if allowed_m is None:
         x, y = (float(v) for v in scene.exact.position[:2])
         allowed_m = 1e-6 * math.hypot(x, y)
@@ -435,6 +448,7 @@ def main() -> None:
     parser.add_argument("seed", type=int)
     parser.add_argument("count", type=int)
     parser.add_argument("--out", type=Path)
+    parser.add_argument("--ulp", action="store_true")
     given = parser.parse_args()
     rows = []
     with given.out.open("a") if given.out else tempfile.TemporaryFile("w") as out:
