@@ -15,7 +15,7 @@ from ..page import Html, text
 _TABLES = ("pendulum", "site", "release", "run")
 _RUN = ("run.t_end", "run.grid_step")  # of the table [run]; the others say nothing of the motion
 _RARE = ("site.altitude", "site.rotation_rate", "site.equatorial_radius", "site.inverse_flattening")
-_LEGENDS = {"pendulum": "Cord", "site": "Place", "release": "Release", "run": "Run"}
+LEGENDS = {"pendulum": "Cord", "site": "Place", "release": "Release", "run": "Run"}
 # what a field is called beside its name, where that is not a word
 _LABELS = {
     "site.gravity": "gravity g",
@@ -124,7 +124,7 @@ def _fieldset(table: str) -> Html:
     described = [field for field in fields() if field["name"].startswith(f"{table}.")]
     common = [field for field in described if field["name"] not in _RARE]
     rare = [field for field in described if field["name"] in _RARE]
-    parts = [f"<legend>{_LEGENDS[table]}</legend>"]
+    parts = [f"<legend>{LEGENDS[table]}</legend>"]
     if table == "release":
         parts.append(_KINDS)
     parts += map(_input, common)

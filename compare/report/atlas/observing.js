@@ -1,16 +1,6 @@
 // The observation: how a right motion became the columns of a file, as compare/diagnosis/observed.py. Maps are fitted to the
-// truth; one that leaves more than is allowed is not named. Needs judging.js.
+// truth; one that leaves more than is allowed is not named. Needs judging.js, and claims.js, which emitted_claims.py writes.
 "use strict";
-
-// as in compare/diagnosis/thresholds.py, which says what each protects against
-const FINEST = 1e-3;
-const ROUNDED = 1.5;
-const NEEDED = 10;
-const RIVAL = 3;
-const ROWS_A_NUMBER = 4;
-const ALTERNATIVES = 3;
-const CHANCE = 0.01;
-const MOST_DIGITS = 7;
 
 const MAPPED = 4000; // rows at most
 const LATE_ROWS = [1, -1, 2, -2]; // by which a column may be late
@@ -266,17 +256,27 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
   const speed = rootMeanSquare(states.map((state, row) => times[row] * Math.hypot(state[3], state[4])));
   if (rest > left || !speed) return null;
   const value = fittedNumber(1 / rate, Math.max(rest, resolution) / speed);
-  return { text: `has a clock that runs ${value.text} times as fast as its motion: divide its times by that`, rest };
+  return { text: CLOCK_SAID.replace("{value}", value.text), rest };
 }
 
-// The sentences of an observation: none if the page finds none.
+// What the rows themselves show, as mistakesIn returns it: maps of columns, the other meaning of g, a clock.
 function observed(columns, judged, truth, allowed) {
   const found = observedCase(columns, judged, truth, allowed);
   const unjudged = `no more than ${shortNumber(found.noise, 1)} of its unit can be judged`;
   const rounded = found.noise > allowed ? [`Your file prints ${found.decimals} decimals: ${unjudged}.`] : [];
   const maps = observation(found, truth);
-  if (maps) return [...rounded, `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest)}`];
-  const clock = clockRate(found, truth);
-  const alike = "A step error may look alike: the command tells more.";
-  return clock ? [...rounded, `Perhaps your program ${clock.text}: ${correctedTo(clock.rest)} ${alike}`] : rounded;
+  if (maps) {
+    const text = `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest)}`;
+    return { notes: [...rounded, text], explained: true };
+  }
+  const gravity = gravityTrial(found, truth);
+  const explainedByGravity = gravity?.isNamed && gravity.explains;
+  const clock = explainedByGravity ? null : clockRate(found, truth); // a clock has a fitted number, the meaning of g none
+  if (clock) {
+    const alike = "A step error may look alike: the command tells more.";
+    const text = `Perhaps your program ${clock.text}: ${correctedTo(clock.rest)} ${alike}`;
+    return { notes: [...rounded, text], explained: true };
+  }
+  const notes = gravity?.isNamed ? [...rounded, gravity.text, gravity.advice] : rounded;
+  return { notes, explained: Boolean(explainedByGravity), gravity };
 }
