@@ -156,10 +156,11 @@ function judge(given, truth, tolerance = null) {
   const judged = columns && judgedRows(columns, truth);
   const amplitude = judged && truth.at ? Math.max(truth.amplitude_m, reach(judged.golden.x, judged.golden.y)) : truth.amplitude_m;
   const part = judged ? reach(columns.x, columns.y) / reach(judged.golden.x, judged.golden.y) : 1;
-  const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (part > 0 && part < truth.words.SMALL ? part : 1);
+  const swingsLess = part > 0 && part < truth.words.SMALL;
+  const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (swingsLess ? part : 1);
   const bound = boundOf(columns, truth);
   const allowed = allowance + bound;
-  const verdict = { tolerance_m: allowance, bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, gravity: null, path: null, transits: null };
+  const verdict = { tolerance_m: allowance, tolerance_of: toleranceOf(tolerance, swingsLess), bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, gravity: null, path: null, transits: null };
   let until = Math.min(truth.t_end, times?.at(-1) ?? 0); // later transits are not missed
   if (columns) {
     const errors = errorsOf(columns, judged);
@@ -186,6 +187,12 @@ function judge(given, truth, tolerance = null) {
   const right = !path || path.max_error_m <= allowed;
   const timely = !transits || !(transits.missed.length || transits.extra.length || transits.max_conditioned_error_m > allowed);
   return { ...verdict, verdict: right && timely ? "agrees" : "disagrees" };
+}
+
+// Where a tolerance comes from: typed, or a millionth of the truth's amplitude, or of that of the rows.
+function toleranceOf(tolerance, swingsLess) {
+  if (tolerance !== null) return "typed";
+  return swingsLess ? "rows" : "amplitude";
 }
 
 // What explains the error, the plainest first: {notes, explained, gravity}, with what was found of the other meaning of g
