@@ -54,7 +54,9 @@ def test_every_field_has_a_label_a_meaning_and_a_place_for_its_mistake(page):
 
 
 def test_the_page_has_the_lines_of_the_documentation(page):
-    lines = [html.unescape(code) for code in re.findall(r"<pre>(.*?)</pre>", page.read_text(), re.S)]
+    lines = [
+        html.unescape(code) for code in re.findall(r"<pre>(.*?)</pre>", page.read_text(), re.S)
+    ]
     described = [block.text.strip() for block in blocks("docs/paste.md")]
     *programs, command = described
     assert len(programs) == 6 and [code.strip() for code in lines[:6]] == programs
@@ -177,7 +179,9 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     )
 
     assert told["missing"].endswith("The box is empty.")
-    assert told["nothing"][0] == "refused" and "Paste what your program printed" in told["nothing"][1]
+    assert (
+        told["nothing"][0] == "refused" and "Paste what your program printed" in told["nothing"][1]
+    )
 
     assert told["gravity"][0] == "disagrees"
     assert "adds the centrifugal force to a g that contains it already" in told["gravity"][1]
