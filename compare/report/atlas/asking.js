@@ -220,10 +220,10 @@ function furtherSteps(result) {
   const { site } = sceneOf(pendulum.texts, fields);
   const { gravity } = result;
   const steps = [];
-  if (!gravity?.isNamed) {
-    const tried = gravity ? "the clock, the unit, the axes and the meaning of g, each alone" : "the clock, the unit and the axes";
-    const untried = gravity ? "Other equations" : "The equations";
-    steps.push(`The page finds nothing wrong with ${tried}. ${untried}, the method and the step are not tried here.`);
+  if (gravity && !gravity.helps) {
+    steps.push("The page finds nothing wrong with the clock, the unit, the axes and the meaning of g. Other equations, the method and the step are not tried here.");
+  } else if (!gravity?.isNamed) {
+    steps.push("The page finds nothing wrong with the clock, the unit and the axes. The equations, the method and the step are not tried here.");
   }
   steps.push("Halve your step and judge again: what shrinks is the error of your method, what stays is in your equations.");
   if (gravity?.helps && !gravity.isNamed && site.gravity_is === "ellipsoid") {
