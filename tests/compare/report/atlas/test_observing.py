@@ -183,7 +183,7 @@ def by_steps(step_s):
 
 
 def test_beside_a_step_error_the_meaning_of_g_is_named_if_it_makes_most_of_the_error():
-    """A fine step leaves a hundredth of the error: what is left is stated. A coarse one leaves more: nothing is named."""
+    """A fine step leaves a hundredth of the error, which is stated. A coarse one leaves more: nothing is named."""
     scene = load_scene("paris", ["run.t_end=600", "inputs=binary64"])
     fine, coarse = answers(scene, [by_steps(0.01), by_steps(0.1)])
     assert "takes g as the effective gravity" in fine["notes"][0] and not fine["explained"]
