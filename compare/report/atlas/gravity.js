@@ -4,8 +4,8 @@
 
 const distancesOf = (columns) => columns[0].map((_, row) => Math.hypot(...columns.map((values) => values[row])));
 
-// What is to be said if the meaning explains the file, or leaves little of the error: {text, advice, isNamed, explains,
-// helps}, where `helps` says that less is left with it; null if the page knows no motion with it.
+// What is to be said if the meaning explains the file, or leaves little of the error: {text, advice, rest in m, isNamed,
+// explains, helps}, where `helps` says that less is left with it; null if the page knows no motion with it.
 function gravityTrial({ names, times, printed, golden, allowed, resolution }, truth) {
   const other = truth.otherGravity?.();
   if (!other) return null;
@@ -25,6 +25,7 @@ function gravityTrial({ names, times, printed, golden, allowed, resolution }, tr
   return {
     text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft)}`,
     advice,
+    rest: largestLeft,
     isNamed: leavesLittle && isHarmless && need >= RIVAL,
     explains,
     helps: need >= RIVAL,

@@ -232,7 +232,8 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
   if (!truth.at || times.length < FIRST_ROWS) return null;
   let rate = 1; // of the motion, over that of the clock
 
-  const statesAt = (count) => times.slice(0, count).map((time) => truth.at(Math.min(time * rate, truth.end)));
+  // of the first rows, those for which the motion is known
+  const statesAt = (count) => times.slice(0, count).filter((time) => time * rate <= truth.end).map((time) => truth.at(time * rate));
   const places = names.map((name) => POSITION.indexOf(name));
   const missed = (state, row) => names.map((name, k) => printed[name][row] - state[places[k]]);
   for (let count = FIRST_ROWS; ; count = Math.min(2 * count, times.length)) {
@@ -259,6 +260,13 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
   return { text: CLOCK_SAID.replace("{value}", value.text), rest };
 }
 
+// Whether a clock is likelier than the other meaning of g, which has no fitted number; as `likelier` of
+// compare/diagnosis/claims.py.
+function isLikelier(clock, gravity, { resolution }) {
+  if (!gravity?.isNamed || !gravity.explains) return true;
+  return NEEDED * Math.max(clock.rest, resolution) < gravity.rest;
+}
+
 // What the rows themselves show, as mistakesIn returns it: maps of columns, the other meaning of g, a clock.
 function observed(columns, judged, truth, allowed) {
   const found = observedCase(columns, judged, truth, allowed);
@@ -270,13 +278,12 @@ function observed(columns, judged, truth, allowed) {
     return { notes: [...rounded, text], explained: true };
   }
   const gravity = gravityTrial(found, truth);
-  const explainedByGravity = gravity?.isNamed && gravity.explains;
-  const clock = explainedByGravity ? null : clockRate(found, truth); // a clock has a fitted number, the meaning of g none
-  if (clock) {
+  const clock = clockRate(found, truth);
+  if (clock && isLikelier(clock, gravity, found)) {
     const alike = "A step error may look alike: the command tells more.";
     const text = `Perhaps your program ${clock.text}: ${correctedTo(clock.rest)} ${alike}`;
     return { notes: [...rounded, text], explained: true };
   }
   const notes = gravity?.isNamed ? [...rounded, gravity.text, gravity.advice] : rounded;
-  return { notes, explained: Boolean(explainedByGravity), gravity };
+  return { notes, explained: Boolean(gravity?.isNamed && gravity.explains), gravity };
 }

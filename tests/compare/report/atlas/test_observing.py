@@ -154,14 +154,20 @@ def test_a_g_of_the_other_meaning_has_the_words_of_the_package(form, program, ad
     assert mine["explained"]
 
 
-def test_the_meaning_of_g_is_likelier_than_a_clock():
-    """At the equator the centrifugal force makes g smaller and nothing else: a clock of another rate fits as well."""
+def test_the_meaning_of_g_is_likelier_than_a_clock_if_it_explains_as_much():
+    """At the equator the centrifugal force makes g smaller and nothing else: a clock of another rate fits as well.
+
+    A g that is about as much too large is no other meaning: a clock leaves far less.
+    """
     equator = SCENE.with_values(["site.latitude=0"])
     shorter = equator.with_values(["site.gravity_is=effective", "run.t_end=110"])
     text = rows_of(shorter)
-    (mine,) = answers(equator.with_values(["site.gravity_is=ellipsoid"]), [text])
+    other = rows_of(equator.with_values(["site.gravity_is=ellipsoid", "site.gravity=9.8447"]))
+    mine, another = answers(equator.with_values(["site.gravity_is=ellipsoid"]), [text, other])
     assert "takes g as the effective gravity" in mine["notes"][0]
     assert not any("clock" in note for note in mine["notes"])
+    assert "has a clock" in another["notes"][0]
+    assert not any("effective" in note for note in another["notes"])
 
 
 def by_steps(step_s):
