@@ -145,18 +145,20 @@ def test_files_are_listed_where_git_does_not_tell(
     assert names_of(tmp_path, "docs", "alone.py") == {"docs/page.md", "alone.py"}
 
 
-# of docs/readers, which the pages of the atlas evaluate by
-EVALUATOR = "compare/report/atlas/function.mjs"
+# of docs, by which the pages of the atlas evaluate, and say how rows are printed
+OF_DOCS = {
+    "compare/report/atlas/function.mjs": "docs/readers/function.mjs",
+    "compare/report/atlas/paste.md": "docs/paste.md",
+}
 
 
 def test_the_wheel_holds_every_module_and_all_data_and_no_more(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         found = {name for name in archive.namelist() if ".dist-info/" not in name}
-        assert archive.read(EVALUATOR) == (ROOT / "docs/readers/function.mjs").read_bytes()
-    code = {EVALUATOR} | names_of(ROOT, "foucault.py", "reference", "compare")
+        for name, original in OF_DOCS.items():
+            assert archive.read(name) == (ROOT / original).read_bytes()
+    code = {*OF_DOCS} | names_of(ROOT, "foucault.py", "reference", "compare")
     data = {f"reference/{name}" for name in names_of(ROOT, "data")}
-    # one of docs/readers, which the atlas's pages carry
-    data.add("compare/report/atlas/function.mjs")
     assert found >= code | data
     assert {
         name for name in found - code - data if not name.startswith("reference/data/golden/")

@@ -47,6 +47,8 @@ UNITS = {
     "vy": " m/s",
 }
 EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal force (--set site.gravity_is=effective)"
+TWICE = "to a g that contains it already (--set site.gravity_is=ellipsoid)"
+ADDED_TWICE = f"adds the centrifugal force {TWICE}"
 NO_CHANGE = "leaves out the centrifugal force's change along the swing"
 CLOCK = "has a clock that runs {value} times as fast as its motion: divide its times by that"
 FACTORS = (
@@ -251,11 +253,8 @@ def _gravity(right: Program) -> Iterator[Cause]:
                 0.2,
             )
             if right.gravity_reading == "effective":
-                twice = "to a g that contains it already (--set site.gravity_is=ellipsoid)"
-                yield reading(
-                    "ellipsoid", "ellipsoid_gravity", f"adds the centrifugal force {twice}"
-                )
-                text = f"adds the centrifugal force, on a sphere of 6371000 m, {twice}"
+                yield reading("ellipsoid", "ellipsoid_gravity", ADDED_TWICE)
+                text = f"adds the centrifugal force, on a sphere of 6371000 m, {TWICE}"
                 on_sphere = _set(gravity_reading="ellipsoid", flattening=0.0, radius=MEAN_RADIUS)
                 yield Cause("ellipsoid_gravity", "gravity", text, on_sphere, RARE, stage="gravity")
     if right.radius:

@@ -47,6 +47,7 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 
 _SUFFIXES = (".svg", ".png", ".pdf")  # of picture files
 _ROOM = 0.06  # free part of a logarithmic axis at each end
+_STYLE = re.compile(r' style="([^"]*)"')
 _PIXELS = 4 / 3  # CSS pixels in a typographic point
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PARAMETERS = {
@@ -184,6 +185,8 @@ def _saved(figure: Any, form: str) -> bytes:
 def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> str:
     """Return the figure as one SVG element that fits into a page.
 
+    It has no styles, which a page's content security policy would have to allow one by one.
+
     Args:
         figure: figure from `sheet`.
         name: another one for each picture in the page: the ids in the SVG depend on it.
@@ -212,14 +215,21 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
 
     text = re.sub(r' id="([^"]+)"', kept_id, text)
     width, height = 72 * figure.get_size_inches()
+    text = _STYLE.sub(_as_attributes, text)
     opening = (
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
         f'viewBox="0 0 {width:g} {height:g}" width="{width * _PIXELS:.0f}" class="{kind}" '
-        f'style="stroke-linejoin: round" role="img" aria-label="{html.escape(description)}">'
+        f'stroke-linejoin="round" role="img" aria-label="{html.escape(description)}">'
     )
     for word, colour in INKS.items():
         text = text.replace(colour, f"var(--{word}, {colour})")
     return opening + text.strip() + "\n"
+
+
+def _as_attributes(style: re.Match[str]) -> str:
+    """Return the declarations of a style as attributes: those of matplotlib have one of the same name each."""
+    declarations = (part.partition(":") for part in style[1].split(";") if part.strip())
+    return "".join(f' {name.strip()}="{value.strip()}"' for name, _, value in declarations)
 
 
 def powers_of_ten(exponents: Sequence[int]) -> list[str]:

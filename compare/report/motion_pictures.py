@@ -40,8 +40,8 @@ _TIME_UNITS = (  # seconds, symbol, and the smallest number of them that is show
 _SMALL = 0.01  # degrees: the least range of the azimuth's axis
 _ROUNDED = re.compile(r"(\d+\.\d\d)\d+")
 _ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after it
-_FONTS = re.compile(r"font-family: [^;\"]+")
-_MARKERS = re.compile(r"(?:<use [^>]*style=\"fill: ([^;\"]*)[^>]*/>\s*){2,}")
+_FONTS = re.compile(r'font-family="[^"]+"')
+_MARKERS = re.compile(r'(?:<use [^>]*fill="([^"]*)"[^>]*/>\s*){2,}')
 _PLACE = re.compile(r'x="(\S+)" y="(\S+)"')
 _THUMB = 200  # side of a thumbnail in its own units
 _THUMB_POINTS = 400  # most points of a thumbnail
@@ -185,7 +185,7 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
                 f"{motion.name}: {axes.get_title('left')}",
                 "lines panel",
             )
-        text = _FONTS.sub("font-family: sans-serif", text)
+        text = _FONTS.sub('font-family="sans-serif"', text)
         text = _ELEMENT.sub(lambda element: _ROUNDED.sub(r"\1", element[0]), text)
         elements.append(_MARKERS.sub(_strokes, text))
     return elements
@@ -217,8 +217,8 @@ def thumbnail(motion: PicturedMotion) -> str:
 def _strokes(markers: re.Match[str]) -> str:
     """Return markers, each an element of its own, as one path of zero-length strokes."""
     places = "".join(f"M{x} {y}h0" for x, y in _PLACE.findall(markers[0]))
-    style = f"fill: none; stroke: {markers[1]}; stroke-width: {_DOT}; stroke-linecap: round"
-    return f'<path d="{places}" style="{style}"/>\n'
+    stroke = f'stroke="{markers[1]}" stroke-width="{_DOT}" stroke-linecap="round"'
+    return f'<path d="{places}" fill="none" {stroke}/>\n'
 
 
 def length_unit(size: float) -> tuple[float, str]:

@@ -143,7 +143,7 @@ def page(
     links = [f'<a href="#{target}">{heading}</a>' for target, heading in headings]
     return Template(_source("page.html")).substitute(
         mark=MARK,
-        policy=_policy(content, own_styles, script) if script else "",
+        policy=_policy(own_styles, script) if script else "",
         title=text(title),
         styles=own_styles,
         lead=text(lead),
@@ -153,15 +153,10 @@ def page(
     )
 
 
-def _policy(content: str, styles: str, script: str) -> str:
-    """Return the content security policy of a page: only its own scripts run, by their hashes.
-
-    Its style has a hash as well, unless pictures have styles at their elements.
-    """
+def _policy(styles: str, script: str) -> str:
+    """Return the content security policy of a page: only its own scripts and styles are used, by their hashes."""
     hashes = [_hash(code) for code in re.findall(r"<script class=.*?>(.*?)</script>", script, re.S)]
-    inline = re.search("<style|<[^>]* style=", content)
-    style = "'unsafe-inline'" if inline else _hash(f"\n{styles}")
-    policy = Template(_POLICY).substitute(styles=style, scripts=" ".join(hashes))
+    policy = Template(_POLICY).substitute(styles=_hash(f"\n{styles}"), scripts=" ".join(hashes))
     return f"{policy}\n"
 
 

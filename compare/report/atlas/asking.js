@@ -12,6 +12,7 @@ const BEARING = {
   "release.azimuth_rate": "rate of the bearing",
 };
 const COMPASS = Object.keys(BEARING);
+const EMPTY = "The box is empty. Paste what your program printed: a line t,x,y, and below it the time in s and the place in m, row by row.";
 const AZIMUTH = Object.fromEntries(COMPASS.map((name) => [name, at(`${name}.meaning`).textContent]));
 
 let pendulum = null; // { title, texts } that the form has, without a mistake
@@ -213,14 +214,19 @@ function knownBy({ bound_m: bound }) {
   return `the motion above, whose error is estimated at ${small(bound)} m`;
 }
 
+// What to do about an error that the page does not explain, or not in full.
 function furtherSteps(result) {
   if (result.verdict !== "disagrees" || result.explained) return [];
   const { site } = sceneOf(pendulum.texts, fields);
-  const steps = [
-    "The page finds nothing wrong with the clock, the unit and the axes. The equations, the method and the step are not tried here.",
-    "Halve your step and judge again: what shrinks is the error of your method, what stays is in your equations.",
-  ];
-  if (site.gravity_is === "ellipsoid") {
+  const { gravity } = result;
+  const steps = [];
+  if (gravity && !gravity.helps) {
+    steps.push("The page finds nothing wrong with the clock, the unit, the axes and the meaning of g. Other equations, the method and the step are not tried here.");
+  } else if (!gravity?.isNamed) {
+    steps.push("The page finds nothing wrong with the clock, the unit and the axes. The equations, the method and the step are not tried here.");
+  }
+  steps.push("Halve your step and judge again: what shrinks is the error of your method, what stays is in your equations.");
+  if (gravity?.helps && !gravity.isNamed && site.gravity_is === "ellipsoid") {
     steps.push("Does your program leave out the centrifugal force? Choose effective under Place: if most of the error goes, that is it.");
   }
   const command = "foucault score pendulum.toml mine.csv";
@@ -244,7 +250,12 @@ async function judgeFiles(chosen) {
 
 function judgePasted() {
   const text = at("pasted").value;
-  if (text.trim()) judgeFiles([new File([text], "your output")]);
+  if (text.trim()) {
+    judgeFiles([new File([text], "your output")]);
+    return;
+  }
+  files = [];
+  showRefusal(shown, EMPTY);
 }
 
 // What can be kept.

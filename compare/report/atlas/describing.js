@@ -50,7 +50,7 @@ function wrongOf(texts, fields, words) {
     }
   }
   for (const name of KINDS[kindOf(texts)].slice(0, 2)) {
-    if (!(name in texts)) wrong[name] = { expected: "a value", advice: "" };
+    if (!(name in texts)) wrong[name] = { expected: words.NUMBER_EXPECTED, advice: "The box is empty." };
   }
   if (Object.keys(wrong).length) return wrong;
 

@@ -15,7 +15,7 @@ from ..page import Html, text
 _TABLES = ("pendulum", "site", "release", "run")
 _RUN = ("run.t_end", "run.grid_step")  # of the table [run]; the others say nothing of the motion
 _RARE = ("site.altitude", "site.rotation_rate", "site.equatorial_radius", "site.inverse_flattening")
-_LEGENDS = {"pendulum": "Cord", "site": "Place", "release": "Release", "run": "Run"}
+LEGENDS = {"pendulum": "Cord", "site": "Place", "release": "Release", "run": "Run"}
 # what a field is called beside its name, where that is not a word
 _LABELS = {
     "site.gravity": "gravity g",
@@ -26,6 +26,12 @@ _LABELS = {
     "release.azimuth_rate": "azimuth rate",
     "run.t_end": "end",
     "run.grid_step": "step of rows",
+}
+# what one has to have for each meaning of g
+_MEANINGS_OF_G = {
+    "ellipsoid": "your g is gravitation alone, as from G M/r², and the centrifugal force comes on top.",
+    "effective": "your g is measured, from a book (9.81), or from a table or formula for your latitude: "
+    "it contains the centrifugal force.",
 }
 _INFINITE = "site.inverse_flattening"  # may be "inf"
 
@@ -124,7 +130,7 @@ def _fieldset(table: str) -> Html:
     described = [field for field in fields() if field["name"].startswith(f"{table}.")]
     common = [field for field in described if field["name"] not in _RARE]
     rare = [field for field in described if field["name"] in _RARE]
-    parts = [f"<legend>{_LEGENDS[table]}</legend>"]
+    parts = [f"<legend>{LEGENDS[table]}</legend>"]
     if table == "release":
         parts.append(_KINDS)
     parts += map(_input, common)
@@ -146,7 +152,7 @@ def _input(field: Mapping[str, Any]) -> Html:
     name = field["name"]
     meaning = str(_info(name).description)
     if field["choices"]:
-        return _choice(name, meaning)
+        return _choice(name, field["choices"])
     label = _LABELS.get(name, name.partition(".")[2])
     unit = f' <span class="unit">{text(field["unit"])}</span>' if field["unit"] else ""
     return Html(
@@ -158,19 +164,18 @@ def _input(field: Mapping[str, Any]) -> Html:
     )
 
 
-def _choice(name: str, meaning: str) -> Html:
-    """Return radio buttons; the meaning has a part for each choice: "one: …; other: …"."""
-    buttons = "".join(_button(name, part) for part in meaning.split("; "))
+def _choice(name: str, choices: Iterable[str]) -> Html:
+    """Return radio buttons for the meanings of g."""
+    buttons = "".join(_button(name, choice) for choice in choices)
     return Html(
         f'<div class="field meanings" role="radiogroup" id="{name}" aria-label="what g means">{buttons}</div>'
     )
 
 
-def _button(name: str, part: str) -> str:
-    value, _, said = part.partition(": ")
+def _button(name: str, choice: str) -> str:
     return (
-        f'<label><input type="radio" name="{name}" value="{text(value)}"> '
-        f"<span><b>{text(value)}</b>: {text(said)}</span></label>\n"
+        f'<label><input type="radio" name="{name}" value="{text(choice)}"> '
+        f"<span><b>{text(choice)}</b>: {text(_MEANINGS_OF_G[choice])}</span></label>\n"
     )
 
 

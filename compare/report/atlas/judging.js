@@ -7,7 +7,6 @@
 const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a time at which the truth is known is judged there
 const EXPLAINED = 0.02; // part of the error that a suspected mistake may leave
 const MOST_EXTRA = 1000; // extra transits that are looked at one by one
-const CORRECTED = "corrected, the error is";
 const SAMPLE = 1000; // rows that show whether a suspicion is worth a look at all
 const POSITION = ["x", "y", "z"];
 const STATE = [...POSITION, "vx", "vy", "vz"];
@@ -108,7 +107,7 @@ function errorsOf(columns, { rows, golden }) {
 }
 
 // The end of a sentence on a mistake: the error that is left without it.
-const correctedTo = (rest) => `${CORRECTED} ${rest.toPrecision(2)} m.`;
+const correctedTo = (rest) => `corrected, the error is ${rest.toPrecision(2)} m.`;
 
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
 const reach = (xs, ys) => xs.reduce((best, x, i) => Math.max(best, Math.hypot(x, ys[i])), 0);
@@ -157,10 +156,11 @@ function judge(given, truth, tolerance = null) {
   const judged = columns && judgedRows(columns, truth);
   const amplitude = judged && truth.at ? Math.max(truth.amplitude_m, reach(judged.golden.x, judged.golden.y)) : truth.amplitude_m;
   const part = judged ? reach(columns.x, columns.y) / reach(judged.golden.x, judged.golden.y) : 1;
-  const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (part > 0 && part < truth.words.SMALL ? part : 1);
+  const swingsLess = part > 0 && part < truth.words.SMALL;
+  const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (swingsLess ? part : 1);
   const bound = boundOf(columns, truth);
   const allowed = allowance + bound;
-  const verdict = { tolerance_m: allowance, bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, path: null, transits: null };
+  const verdict = { tolerance_m: allowance, tolerance_of: toleranceOf(tolerance, swingsLess), bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, gravity: null, path: null, transits: null };
   let until = Math.min(truth.t_end, times?.at(-1) ?? 0); // later transits are not missed
   if (columns) {
     const errors = errorsOf(columns, judged);
@@ -169,9 +169,10 @@ function judge(given, truth, tolerance = null) {
     const apart = columns.t.length - judged.rows.length;
     if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
     if (verdict.path.max_error_m > allowed) {
-      const mistakes = mistakesIn(columns, judged, errors, truth, allowed);
-      verdict.notes.push(...mistakes);
-      verdict.explained = mistakes.some((text) => text.includes(CORRECTED));
+      const { notes, explained, gravity = null } = mistakesIn(columns, judged, errors, truth, allowed);
+      verdict.notes.push(...notes);
+      verdict.explained = explained;
+      verdict.gravity = gravity;
     }
   }
   if (times && truth.transits) {
@@ -188,12 +189,19 @@ function judge(given, truth, tolerance = null) {
   return { ...verdict, verdict: right && timely ? "agrees" : "disagrees" };
 }
 
-// What explains the error, the plainest first.
+// Where a tolerance comes from: typed, or a millionth of the truth's amplitude, or of that of the rows.
+function toleranceOf(tolerance, swingsLess) {
+  if (tolerance !== null) return "typed";
+  return swingsLess ? "rows" : "amplitude";
+}
+
+// What explains the error, the plainest first: {notes, explained, gravity}, with what was found of the other meaning of g
+// if it was tried.
 function mistakesIn(columns, judged, errors, truth, allowed) {
   const plain = suspicions(columns, judged, errors, truth);
-  if (plain.length) return plain;
+  if (plain.length) return { notes: plain, explained: true };
   const unit = unitOfTime(columns, truth);
-  return unit.length ? unit : observed(columns, judged, truth, allowed);
+  return unit.length ? { notes: unit, explained: true } : observed(columns, judged, truth, allowed);
 }
 
 function pathVerdict(columns, { rows, golden }, errors, truth, { allowed, amplitude, bound }) {

@@ -1,16 +1,6 @@
 // The observation: how a right motion became the columns of a file, as compare/diagnosis/observed.py. Maps are fitted to the
-// truth; one that leaves more than is allowed is not named. Needs judging.js.
+// truth; one that leaves more than is allowed is not named. Needs judging.js, and claims.js, which emitted_claims.py writes.
 "use strict";
-
-// as in compare/diagnosis/thresholds.py, which says what each protects against
-const FINEST = 1e-3;
-const ROUNDED = 1.5;
-const NEEDED = 10;
-const RIVAL = 3;
-const ROWS_A_NUMBER = 4;
-const ALTERNATIVES = 3;
-const CHANCE = 0.01;
-const MOST_DIGITS = 7;
 
 const MAPPED = 4000; // rows at most
 const LATE_ROWS = [1, -1, 2, -2]; // by which a column may be late
@@ -242,7 +232,8 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
   if (!truth.at || times.length < FIRST_ROWS) return null;
   let rate = 1; // of the motion, over that of the clock
 
-  const statesAt = (count) => times.slice(0, count).map((time) => truth.at(Math.min(time * rate, truth.end)));
+  // of the first rows, those for which the motion is known
+  const statesAt = (count) => times.slice(0, count).filter((time) => time * rate <= truth.end).map((time) => truth.at(time * rate));
   const places = names.map((name) => POSITION.indexOf(name));
   const missed = (state, row) => names.map((name, k) => printed[name][row] - state[places[k]]);
   for (let count = FIRST_ROWS; ; count = Math.min(2 * count, times.length)) {
@@ -266,17 +257,33 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
   const speed = rootMeanSquare(states.map((state, row) => times[row] * Math.hypot(state[3], state[4])));
   if (rest > left || !speed) return null;
   const value = fittedNumber(1 / rate, Math.max(rest, resolution) / speed);
-  return { text: `has a clock that runs ${value.text} times as fast as its motion: divide its times by that`, rest };
+  return { text: CLOCK_SAID.replace("{value}", value.text), rest };
 }
 
-// The sentences of an observation: none if the page finds none.
+// Whether a clock is likelier than the other meaning of g, which has no fitted number; as `likelier` of
+// compare/diagnosis/claims.py.
+function isLikelier(clock, gravity, { resolution }) {
+  if (!gravity?.isNamed || !gravity.explains) return true;
+  return NEEDED * Math.max(clock.rest, resolution) < gravity.rest;
+}
+
+// What the rows themselves show, as mistakesIn returns it: maps of columns, the other meaning of g, a clock.
 function observed(columns, judged, truth, allowed) {
   const found = observedCase(columns, judged, truth, allowed);
   const unjudged = `no more than ${shortNumber(found.noise, 1)} of its unit can be judged`;
   const rounded = found.noise > allowed ? [`Your file prints ${found.decimals} decimals: ${unjudged}.`] : [];
   const maps = observation(found, truth);
-  if (maps) return [...rounded, `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest)}`];
+  if (maps) {
+    const text = `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest)}`;
+    return { notes: [...rounded, text], explained: true };
+  }
+  const gravity = gravityTrial(found, truth);
   const clock = clockRate(found, truth);
-  const alike = "A step error may look alike: the command tells more.";
-  return clock ? [...rounded, `Perhaps your program ${clock.text}: ${correctedTo(clock.rest)} ${alike}`] : rounded;
+  if (clock && isLikelier(clock, gravity, found)) {
+    const alike = "A step error may look alike: the command tells more.";
+    const text = `Perhaps your program ${clock.text}: ${correctedTo(clock.rest)} ${alike}`;
+    return { notes: [...rounded, text], explained: true };
+  }
+  const notes = gravity?.isNamed ? [...rounded, gravity.text, gravity.advice] : rounded;
+  return { notes, explained: Boolean(gravity?.isNamed && gravity.explains), gravity };
 }

@@ -7,6 +7,7 @@ from string import Template
 from ..page import Html, page, paragraph, section
 from . import parts
 from .form import fields, form, form_words, options, presets
+from .paste import printing
 from .scripts import data, scripts, source
 
 _LEAD = (
@@ -22,9 +23,10 @@ def pendulum_page(scenes: str) -> str:
     asked = Template(source("pendulum.html")).substitute(
         options=options(known), player=source("player.html").rstrip(), form=form()
     )
+    judge = Template(source("judge.html").rstrip()).substitute(printing=printing())
     sections = [
         section("Your pendulum", Html(asked)),
-        section("Judge your program", Html(source("judge.html").rstrip())),
+        section("Judge your program", Html(judge)),
         section("Keep it", Html(source("keep.html").rstrip())),
     ]
     document = {

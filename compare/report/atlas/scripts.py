@@ -14,15 +14,28 @@ from reference.scenes.shipped import data_root, in_checkout
 from ..page import Html
 from . import parts
 from .emitted import emitted
+from .emitted_claims import emitted_claims
 
 EMITTED = "emitted.js"
+CLAIMS = "claims.js"
+_EMITTED = {EMITTED: emitted, CLAIMS: emitted_claims}
 _EVALUATOR = "function.mjs"
 # what the two workers are made of: of a scene's golden data, and of the motion that a page computes
-_JUDGING = ("function.mjs", "reading.js", "judging.js", "observing.js", "answering.js")
+_JUDGING = (
+    "function.mjs",
+    "reading.js",
+    "judging.js",
+    CLAIMS,
+    "observing.js",
+    "gravity.js",
+    "answering.js",
+)
 _SOLVING = (
     "reading.js",
     "judging.js",
+    CLAIMS,
     "observing.js",
+    "gravity.js",
     "answering.js",
     EMITTED,
     "integrating.js",
@@ -64,8 +77,8 @@ def source(name: str) -> str:
 
     Of the program in docs/readers it is the function that evaluates.
     """
-    if name == EMITTED:
-        return emitted()
+    if name in _EMITTED:
+        return _EMITTED[name]()
     if name == _EVALUATOR:
         folder = data_root().parent / "docs" / "readers" if in_checkout() else files(__package__)
         program = folder.joinpath(name).read_text(encoding="utf-8")

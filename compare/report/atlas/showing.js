@@ -59,6 +59,17 @@ function pictureMade(svg) {
   return document.importNode(documentElement, true);
 }
 
+// What decided a verdict, and how to change it.
+const LOOSEN = "To loosen this, type metres into Tolerance above.";
+const DECIDES = {
+  typed: "the tolerance that you typed above.",
+  amplitude: `a millionth of the amplitude. ${LOOSEN}`,
+  rows: `a millionth of the amplitude of your rows, which swing far less than this. ${LOOSEN}`,
+};
+
+const decidedBy = ({ tolerance_m: tolerance, tolerance_of: of }) =>
+  `It agrees if it is within ${small(tolerance)} m of the right motion everywhere: ${DECIDES[of]}`;
+
 function showRefusal(shown, reason) {
   shown.className = "refused";
   shown.replaceChildren(made("p", { className: "word" }, made("strong", {}, "Not judged")), made("p", {}, reason));
@@ -77,9 +88,12 @@ function showVerdict(shown, files, result, { name, end, known, bound }, notes = 
   const names = files.map((file) => file.name).join(" and ");
   const word = made("p", { className: "word" }, made("strong", {}, `${names} ${result.verdict}`), ` with ${name}`);
   shown.className = result.verdict;
-  shown.replaceChildren(word, made("ul", {}, ...items), factsMade(rows));
+  const decided = made("p", { className: "faint" }, decidedBy(result));
+  shown.replaceChildren(word, decided, made("ul", {}, ...items), factsMade(rows));
+  if (!result.points) return;
   const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
-  if (result.points) shown.append(pictureMade(errorPicture(result, wide, bound)));
+  const help = `How far your bob is from the right one, in m. Below the line “tolerance” it agrees; below “${bound}” nothing can be told.`;
+  shown.append(made("p", { className: "faint" }, help), pictureMade(errorPicture(result, wide, bound)));
 }
 
 // Take the files that are dropped on a zone or chosen.

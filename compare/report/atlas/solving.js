@@ -1,5 +1,5 @@
 // Solve a pendulum twice and make of it what judging.js takes for the truth; the difference of the runs estimates the
-// error. Needs integrating.js, swinging.js and answering.js. Pure functions, without the page.
+// error. Needs integrating.js, swinging.js, answering.js and claims.js. Pure functions, without the page.
 "use strict";
 
 const FIRST = { order: 20, truncation: 2 ** -50, moved: 0 };
@@ -91,6 +91,18 @@ function transitsOf(first, second, omega) {
   };
 }
 
+// A scene's motion if its g has the other meaning, {is, at}; null if it cannot be computed.
+function withOtherGravity(scene) {
+  const is = MEANINGS_OF_G[scene.site.gravity_is].other;
+  try {
+    const problem = problemOf({ ...scene, site: { ...scene.site, gravity_is: is } });
+    return { is, at: motionOf(integrate(problem, FIRST.order, FIRST.truncation)) };
+  } catch (error) {
+    if (error instanceof Unsolvable) return null;
+    throw error;
+  }
+}
+
 // The motion of a scene, whose fields are numbers. Throws Unsolvable.
 function solve(scene, words, report = () => {}) {
   const end = scene.run.t_end;
@@ -105,6 +117,7 @@ function solve(scene, words, report = () => {}) {
   const tilt = tiltOf(constants);
   const until = knownUntil(error, end, words.TOLERANCE * amplitude);
   const transits = until < end ? null : transitsOf(first, second, omega);
+  let other = null;
   return {
     scene,
     steps: first.steps,
@@ -136,6 +149,7 @@ function solve(scene, words, report = () => {}) {
       at: first.at,
       end,
       bounds: { x: error(end), y: error(end), z: error(end) },
+      otherGravity: () => (other ??= withOtherGravity(scene)),
       words,
     },
   };

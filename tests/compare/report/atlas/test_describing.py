@@ -99,7 +99,9 @@ def test_a_release_is_below_the_suspension_and_rows_are_limited():
     ]
     beyond, missing, right, rows = ask("(texts) => wrongOf(texts, fields, words)", cases)
     assert "a point below the suspension" in beyond["release.x"]["expected"]
-    assert missing == {"release.y": {"expected": "a value", "advice": ""}} and right == {}
+    assert [*missing] == ["release.y"] and right == {}
+    assert missing["release.y"]["expected"].startswith("a decimal number such as ")
+    assert missing["release.y"]["advice"] == "The box is empty."
     assert rows["run.grid_step"]["expected"] == "at most 2000000 grid times up to t_end"
 
 

@@ -18,7 +18,7 @@ from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
 from compare.diagnosis.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from compare.report.atlas.parts import golden_function, page_data, plain, vocabulary
-from compare.report.atlas.scripts import source
+from compare.report.atlas.scripts import WORKERS, source
 from reference import InputError
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -44,9 +44,7 @@ console.log(JSON.stringify({ told, meanings: headers.map((word) => meaning(word,
 
 def run(golden, cases=(), headers=()):
     """Run the script on cases of (trajectory or None, transits or None, tolerance or None)."""
-    script = (
-        "".join(map(source, ("function.mjs", "reading.js", "judging.js", "observing.js"))) + RUN
-    )
+    script = "".join(map(source, WORKERS["judging"])) + RUN
     asked = [
         {"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases
     ]

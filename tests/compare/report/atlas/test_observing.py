@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 
 import numpy as np
@@ -12,10 +11,8 @@ from page_motion import code, node, words
 
 import reference
 from compare import judge
-from compare.diagnosis import thresholds
 from compare.diagnosis.causes import CLOCK
 from compare.report.atlas.form import fields, texts_of
-from compare.report.atlas.scripts import source
 from reference import load_scene
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -94,13 +91,6 @@ def file_of(columns):
     return csv(",".join(names), *(column for column in columns if column is not None))
 
 
-def test_the_thresholds_are_those_of_the_package():
-    numbers = re.findall(r"^const ([A-Z_]+) = ([\d.e-]+);", source("observing.js"), re.M)
-    shared = {name: float(text) for name, text in numbers if hasattr(thresholds, name)}
-    assert len(shared) == 8
-    assert shared == {name: getattr(thresholds, name) for name in shared}
-
-
 def test_an_observation_has_the_words_of_the_package(motion, size, tmp_path):
     names = size(("heights",), MAPS)
     files = {name: file_of(MAPS[name](*(motion[column] for column in "txyz"))) for name in names}
@@ -135,3 +125,73 @@ def test_a_wrong_program_is_no_observation(motion):
         wrong.append(csv("t,x,y", *(np.array(getattr(solution, name)) for name in "txy")))
     for mine in answers(SCENE, wrong):
         assert mine["verdict"] == "disagrees" and mine["notes"] == []
+
+
+def rows_of(scene):
+    """The rows of a right program for a scene."""
+    solution = reference.solve(scene.with_values({"run.digits": 18, "run.level": "computed"}))
+    return csv("t,x,y", *(np.array(getattr(solution, name)) for name in "txy"))
+
+
+@pytest.mark.parametrize(
+    ("form", "program", "advice"),
+    [
+        ("ellipsoid", "effective", "choose effective under Place; else add the force."),
+        ("effective", "ellipsoid", "choose ellipsoid under Place."),
+    ],
+)
+def test_a_g_of_the_other_meaning_has_the_words_of_the_package(form, program, advice, tmp_path):
+    asked = SCENE.with_values([f"site.gravity_is={form}"])
+    text = rows_of(SCENE.with_values([f"site.gravity_is={program}"]))
+    path = tmp_path / "mine.csv"
+    path.write_text(text)
+    (cause,) = judge(path, asked).explanation.causes
+    (mine,) = answers(asked, [text])
+    said, told = mine["notes"]
+    words = cause.text.partition(" (--set")[0]
+    assert said.startswith(f"Your program {words}: corrected, the error is ")
+    assert advice in told
+    assert mine["explained"]
+
+
+def test_the_meaning_of_g_is_likelier_than_a_clock_if_it_explains_as_much():
+    """At the equator the centrifugal force makes g smaller and nothing else: a clock of another rate fits as well.
+
+    A g that is about as much too large is no other meaning: a clock leaves far less.
+    """
+    equator = SCENE.with_values(["site.latitude=0"])
+    shorter = equator.with_values(["site.gravity_is=effective", "run.t_end=110"])
+    text = rows_of(shorter)
+    other = rows_of(equator.with_values(["site.gravity_is=ellipsoid", "site.gravity=9.8447"]))
+    mine, another = answers(equator.with_values(["site.gravity_is=ellipsoid"]), [text, other])
+    assert "takes g as the effective gravity" in mine["notes"][0]
+    assert not any("clock" in note for note in mine["notes"])
+    assert "has a clock" in another["notes"][0]
+    assert not any("effective" in note for note in another["notes"])
+
+
+def by_steps(step_s):
+    """Rows of a flat small-angle pendulum near Paris, whose g is effective, by steps of Euler and Cromer."""
+    length, gravity = 67, 9.80665
+    coriolis = 2 * 7.292115e-5 * np.sin(np.radians(48.846111))
+    x, y, vx, vy = 0.3, 0.4, 0.0, 0.0
+    rows = []
+    for count in range(round(600 / step_s) + 1):
+        rows.append((count * step_s, x, y))
+        along_x = -gravity / length * x + coriolis * vy
+        along_y = -gravity / length * y - coriolis * vx
+        vx += step_s * along_x
+        vy += step_s * along_y
+        x += step_s * vx
+        y += step_s * vy
+    each = round(1 / step_s)
+    return csv("t,x,y", *np.array(rows[::each]).T)
+
+
+def test_beside_a_step_error_the_meaning_of_g_is_named_if_it_makes_most_of_the_error():
+    """A fine step leaves a hundredth of the error, which is stated. A coarse one leaves more: nothing is named."""
+    scene = load_scene("paris", ["run.t_end=600", "inputs=binary64"])
+    fine, coarse = answers(scene, [by_steps(0.01), by_steps(0.1)])
+    assert "takes g as the effective gravity" in fine["notes"][0] and not fine["explained"]
+    assert fine["gravity"]["isNamed"] and not fine["gravity"]["explains"]
+    assert coarse["notes"] == [] and coarse["gravity"]["helps"] and not coarse["explained"]

@@ -84,10 +84,9 @@ def test_pages_load_nothing_stay_small_and_have_each_id_once(atlas):
     for path in atlas.glob("*.html"):
         text = path.read_text()
         policy = re.search(r'Content-Security-Policy" content="(.*?)"', text)[1]
-        assert (
-            "default-src 'none'" in policy
-            and "'unsafe-inline'" not in policy.partition("script-src")[2]
-        )
+        assert "default-src 'none'" in policy and "unsafe" not in policy
+        elements = text.partition("<script")[0]
+        assert elements.count("<style") == 1 and not re.search(r"<[^>]* style=", elements)
         assert not re.search(
             r"<(?:link|img|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text
         )
@@ -205,6 +204,7 @@ TOLD = """
 (async () => {
   const told = [];
   const errors = [];
+  addEventListener("securitypolicyviolation", (event) => errors.push(`forbidden: ${event.violatedDirective}`));
   const element = document.getElementById("player");
   const canvas = element.querySelector("canvas");
   const button = element.querySelector("button");
@@ -235,8 +235,9 @@ TOLD = """
   await new Promise((done) => setTimeout(done, 1200));
   moved.push(output.textContent, count, drawn, document.getElementById("played").textContent);
   const fits = document.documentElement.scrollWidth <= innerWidth;
+  const line = getComputedStyle(document.querySelector('.pictures path[stroke^="var(--blue"]')).stroke;
   document.body.innerHTML = '<pre id="told"></pre>';
-  const all = { told, fits, moved, errors, display, wide: innerWidth };
+  const all = { told, fits, moved, errors, display, line, wide: innerWidth };
   document.getElementById("told").textContent = JSON.stringify(all);
 })();
 </script></body>"""
@@ -289,6 +290,7 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_pat
     )
     assert told["fits"], "the page is wider than a phone"
     assert told["errors"] == []
+    assert told["line"] == "rgb(0, 114, 178)", "pictures have the page's colours"
     assert told["moved"][-1].startswith("Computed in this page, its error estimated at ")
     words = [one[0] for one in told["told"]]
     late = "disagrees" if beside else "refused"  # no row of it is at a golden time

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import html
 import json
 import re
 from urllib.parse import urlencode
 
 import pytest
 from browsing import CHROMIUM, in_browser
+from pages import blocks
 
 from compare.report.atlas.pendulum_page import pendulum_page
 
@@ -51,6 +53,16 @@ def test_every_field_has_a_label_a_meaning_and_a_place_for_its_mistake(page):
     assert len(ids) == len(set(ids))
 
 
+def test_the_page_has_the_lines_of_the_documentation(page):
+    lines = [
+        html.unescape(code) for code in re.findall(r"<pre>(.*?)</pre>", page.read_text(), re.S)
+    ]
+    described = [block.text.strip() for block in blocks("docs/paste.md")]
+    *programs, command = described
+    assert len(programs) == 6 and [code.strip() for code in lines[:6]] == programs
+    assert command.startswith("$ foucault score")
+
+
 WALK = r"""
 <script>
 (async () => {
@@ -85,7 +97,12 @@ WALK = r"""
 
   await type("pendulum.length", "-1");
   told.wrong = at("pendulum.length.wrong").textContent;
+  await type("release.x", "");
+  told.missing = at("release.x.wrong").textContent;
+  at("release.x").value = "0.3";
   told.invalid = at("pendulum.length").getAttribute("aria-invalid");
+  shown.replaceChildren();
+  told.nothing = await paste(" \n");
   await type("pendulum.length", "10");
   told.right = at("pendulum.length.wrong").textContent;
   told.link = location.hash;
@@ -94,6 +111,13 @@ WALK = r"""
   told.agrees = await paste(motion("t,x,y", (x, y) => [x, y]));
   told.swapped = await paste(motion("t,x,y", (x, y) => [y, x]));
   told.wrongRows = await paste(motion("t,x,y", (x, y, t) => [x * Math.cos(t / 900), y]));
+  const other = { ellipsoid: "effective", effective: "ellipsoid" }[textsOfForm()["site.gravity_is"]];
+  told.gravity = await paste(rowsNow({ "site.gravity_is": other })("t,x,y", (x, y) => [x, y]));
+  at("tolerance").value = "1";
+  shown.replaceChildren();
+  at("tolerance").dispatchEvent(new Event("change", { bubbles: true }));
+  told.loose = await verdict();
+  at("tolerance").value = "";
   told.header = await paste(`t,x,%s\n0,1,2\n`);
   const data = new DataTransfer();
   data.items.add(new File([motion("t,x,y", (x, y) => [x, 2 * y])], "%s.csv"));
@@ -116,9 +140,9 @@ WALK = r"""
   document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
 })();
 
-// Rows of the motion that is shown, through a function of x, y and t.
-function rowsNow() {
-  const texts = textsOfForm();
+// Rows of the motion that is shown, or of a changed one, through a function of x, y and t.
+function rowsNow(changes = {}) {
+  const texts = { ...textsOfForm(), ...changes };
   const at_ = motionOf(integrate(problemOf(sceneOf(texts, fields)), 20, 2 ** -50));
   return (header, map) => {
     const lines = Array.from({ length: 121 }, (_, i) => {
@@ -154,6 +178,17 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
         told["right"] == "" and "pendulum.length=10" in told["link"] and "evil" not in told["link"]
     )
 
+    assert told["missing"].endswith("The box is empty.")
+    assert (
+        told["nothing"][0] == "refused" and "Paste what your program printed" in told["nothing"][1]
+    )
+
+    assert told["gravity"][0] == "disagrees"
+    assert "adds the centrifugal force to a g that contains it already" in told["gravity"][1]
+    assert "choose ellipsoid under Place" in told["gravity"][1]
+    assert "Halve your step" not in told["gravity"][1], "nothing is left to explain"
+    assert "a millionth of the amplitude. To loosen this" in told["gravity"][1]
+    assert told["loose"][0] == "agrees" and "tolerance that you typed" in told["loose"][1]
     assert told["agrees"][0] == "agrees" and "your output agrees" in told["agrees"][1]
     assert told["swapped"][0] == "disagrees"
     assert (
@@ -161,6 +196,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     )
     assert told["wrongRows"][0] == "disagrees"
     assert "foucault score pendulum.toml mine.csv" in told["wrongRows"][1]
+    assert "the axes and the meaning of g" in told["wrongRows"][1]
     assert told["header"][0] == "refused" and EVIL in told["header"][1]
     assert f"{EVIL}.csv disagrees with {EVIL}" in told["dropped"][1]
     assert "Your file prints y times 2" in told["dropped"][1]

@@ -1,0 +1,33 @@
+// The other meaning of g: what it leaves of a file, by the tests of compare/diagnosis/claims.py. `truth.otherGravity`
+// returns {is, at}, that meaning and the motion with it. Needs observing.js and claims.js.
+"use strict";
+
+const distancesOf = (columns) => columns[0].map((_, row) => Math.hypot(...columns.map((values) => values[row])));
+
+// What is to be said if the meaning explains the file, or leaves little of the error: {text, advice, rest in m, isNamed,
+// explains, helps}, where `helps` says that less is left with it; null if the page knows no motion with it.
+function gravityTrial({ names, times, printed, golden, allowed, resolution }, truth) {
+  const other = truth.otherGravity?.();
+  if (!other) return null;
+  const states = times.map((time) => other.at(Math.min(time, truth.end)));
+  const errors = names.map((name) => lessThan(printed[name], golden[name]));
+  const left = names.map((name) => lessThan(printed[name], states.map((state) => state[POSITION.indexOf(name)])));
+
+  const error = rootMeanSquare(distancesOf(errors));
+  const rest = rootMeanSquare(distancesOf(left));
+  const largestLeft = farthest(distancesOf(left));
+  const explains = largestLeft <= allowed;
+  const leavesLittle = explains || NEEDED ** 2 * rest <= error;
+  const isHarmless = left.every((values, i) => farthest(values) <= RIVAL * Math.max(farthest(errors[i]), resolution));
+  const need = error / Math.max(rest, resolution); // times as much is left without it
+
+  const { said, advice } = MEANINGS_OF_G[other.is];
+  return {
+    text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft)}`,
+    advice,
+    rest: largestLeft,
+    isNamed: leavesLittle && isHarmless && need >= RIVAL,
+    explains,
+    helps: need >= RIVAL,
+  };
+}
