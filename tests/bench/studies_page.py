@@ -230,8 +230,8 @@ def _counted_methods(kept: Documents) -> str:
     hard = {cell.method for cell in cells(kept["stability"]) if cell.status != Status.NOT_INSTALLED}
     without = ", ".join(f"`{name}`" for name in METHODS if name not in hard)
     return (
-        f"`foucault methods` lists {len(METHODS)} methods. {len(ladders)} are run over their settings on Paris and "
-        f"other scenes, {len(hard)} on the difficult scenes (without {without}), and "
+        f"`foucault methods` lists {len(METHODS)} methods. Of these {len(ladders)} are run over their settings on "
+        f"Paris and other scenes, {len(hard)} on the difficult scenes (without {without}), and "
         f"{len({run['method'] for run in kept['long']['long_runs']})} over thirty days."
     )
 
@@ -338,7 +338,8 @@ def _table(document: Document) -> Iterator[str]:
     ]
     if beyond:
         costs = ", ".join(f"`{curve.label}` ({_short(_cheapest(curve))}~ s)" for curve in beyond)
-        yield f"At every setting beyond {document['limit_s']:g} CPU s, and so without an error: {costs}."
+        limit = f"{document['limit_s']:g} CPU s"
+        yield f"Beyond the limit of {limit} at every setting, so their errors were not measured: {costs}."
         yield ""
 
 
@@ -362,7 +363,7 @@ def _again(kept: Documents) -> Iterator[str]:
     yield so(
         tau > SAME_ORDER,
         f"{len(both)} of the runs were repeated under another load. They rank by cost nearly as before (Kendall's "
-        f"tau {tau:.2f}). Single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times the first ones, half of them "
+        f"tau {tau:.2f}). Individual costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times the first ones, half of them "
         f"{ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Ratios of costs are reliable to about that.",
     )
     yield ""
@@ -433,9 +434,9 @@ def _stability(kept: Documents) -> Iterator[str]:
     yield (
         f"Each method is asked for the same number of digits on every scene, over at most {SWINGS} small swings. A run "
         f"is *silently wrong* if it reports success with an error above {WRONG} times the requested one, and above "
-        "what such an error at the release grows to by the motion itself. If the motion amplifies it by more, the run "
-        "is *ill-conditioned*; that is not the method's fault. Steps are fractions of 2π over the fastest rate of the "
-        "scene."
+        "that to which the motion itself amplifies an error of the requested size at the release. If only the first "
+        "holds, the run is *ill-conditioned*; that is not the method's fault. Steps are fractions of 2π over the "
+        "fastest rate of the scene."
     )
     yield ""
     yield from (f"- {sentence}" for sentence in headlines(found))
@@ -495,8 +496,8 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     }
     yield so(
         not kept,
-        "- `separatrix`, which ends on top of the rod, defeats every method: the motion amplifies an error more than "
-        "any tolerance allows for.",
+        "- `separatrix`, whose bob ends balanced above the suspension, defeats every method: the motion amplifies an "
+        "error more than any tolerance allows for.",
     )
     stiff = [
         name

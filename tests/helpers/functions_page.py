@@ -11,7 +11,7 @@ from reference.dataset.files import read_files
 from reference.dataset.manifest import FUNCTION
 from reference.scenes.shipped import golden_root
 
-PAGE, BEFORE, AFTER = ROOT / "docs/format.md", "### Those that ship\n", "\n## ranges.json"
+PAGE, BEFORE, AFTER = ROOT / "docs/format.md", "### Golden functions that ship\n", "\n## ranges.json"
 MOMENTS = 10_000  # evenly spread over the span, at which the farthest point is sought
 HEADS = (
     "scene",
