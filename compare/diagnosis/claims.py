@@ -180,7 +180,11 @@ class _AmongRivals:
             return
         explained = self.best.explains or not self.best.untyped
         needed = all(self._need(cause) >= NEEDED for cause in differing)
-        certain = self.best.is_sound and explained and needed
+        # a number that nobody typed takes up a part of any other
+        beside = {cause.id for cause in self.best.untyped_inputs} - {
+            cause.id for cause in differing
+        }
+        certain = self.best.is_sound and explained and needed and not beside
         yield from _either(differing, _different(self._alternatives), certain)
 
     def _sized(self) -> Iterator[Deviation]:

@@ -154,11 +154,11 @@ class RunTable(SceneTable):
     level: Level = field(
         "confirmed", "", "what has to stand behind every digit; enclosed is a proof"
     )
-    transits: bool = field(True, "", "whether the times of the transits are sought")
+    transits: bool = field(True, "", "whether to find the times of the transits")
     sections: Sections = field(
         None,
         "",
-        "other moments that are sought: highest, lowest, gate AZIMUTH, gate AZIMUTH@0, turn AZIMUTH",
+        "other moments to find: highest, lowest, gate AZIMUTH, gate AZIMUTH@0, turn AZIMUTH",
     )
 
     @property

@@ -1,7 +1,7 @@
 """Scenes: the inputs of a run, read from TOML files, checked, and kept as exact decimals.
 
 Numbers stay strings until they are needed, and then become exact fractions: "48.846111" is the
-decimal 48.846111 and not the double next to it, unless the scene says `inputs = "binary64"`.
+decimal 48.846111 and not the double nearest to it, unless the scene says `inputs = "binary64"`.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Scene(SceneTable):
     source: Line = field("", "", "where its numbers come from")
     flags: tuple[Line, ...] = field((), "", "words for what is difficult in it")
     inputs: Reading = field(
-        "decimal", "", "decimal: each number is exact; binary64: the double next to it"
+        "decimal", "", "decimal: each number is exact; binary64: the double nearest to it"
     )
     pendulum: Pendulum = Pendulum()
     site: Site = Site()

@@ -174,6 +174,30 @@ def test_an_either_without_which_little_more_is_left_is_not_certain() -> None:
     assert [cause.stage for cause in found.explanation.causes] == ["as_if"]
 
 
+def test_beside_a_number_that_nobody_typed_no_either_is_certain() -> None:
+    """Velocity Verlet with both accelerations of the old velocity: a push at the release makes up for most of it."""
+    step, square, coriolis = 0.27 / 21, 9.81 / 20, 0.01 * math.sqrt(3)
+    place, velocity = 0.2 + 0j, 0j
+    printed = []
+    for count in range(220 * 21):
+        if count % 21 == 0:
+            printed.append((place.real, place.imag))
+        old = -square * place - 1j * coriolis * velocity
+        place += step * velocity + step**2 / 2 * old
+        new = -square * place - 1j * coriolis * velocity
+        velocity += step / 2 * (old + new)
+    fields = [
+        "pendulum.length=20",
+        "site.latitude=60",
+        "site.rotation_rate=0.01",
+        "site.gravity=9.81",
+    ]
+    scene = paris(*fields, "site.gravity_is=effective", "release.x=0.2", "release.y=0")
+    found = explained(np.array(printed), 0.27 * np.arange(220), scene)
+    assert "as_if.release.vx" in stages(found)
+    assert not any("site.latitude" in word for word in stages(found))
+
+
 def test_a_map_of_a_column_that_is_hardly_needed_is_not_certain() -> None:
     """A y that is too large by 4e-6 of itself, beside an error within the tolerance."""
     right = rows()
