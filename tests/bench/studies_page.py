@@ -226,14 +226,23 @@ def _where(document: Document) -> str:
 
 def _counted_methods(kept: Documents) -> str:
     """Return how many methods each kind of study runs, as a sentence."""
+    studied = _studied(kept)
     ladders = {row.method for row in rows_of(kept["paris"]) if row.status != Status.NOT_INSTALLED}
     hard = {cell.method for cell in cells(kept["stability"]) if cell.status != Status.NOT_INSTALLED}
-    without = ", ".join(f"`{name}`" for name in METHODS if name not in hard)
+    without = ", ".join(f"`{name}`" for name in studied if name not in hard)
+    new = ", ".join(f"`{name}`" for name in METHODS if name not in studied)
     return (
         f"`foucault methods` lists {len(METHODS)} methods. Of these {len(ladders)} are run over their settings on "
         f"Paris and other scenes, {len(hard)} on the difficult scenes (without {without}), and "
         f"{len({run['method'] for run in kept['long']['long_runs']})} over thirty days."
+        f"{f' Not measured yet: {new}.' if new else ''}"
     )
+
+
+def _studied(kept: Documents) -> list[str]:
+    """Return the methods that the studies know: a new one is in none until they are made again."""
+    known = {row.method for row in rows_of(kept["paris"])}
+    return [name for name in METHODS if name in known]
 
 
 def _results(name: str, kept: Documents) -> Sequence[Row | Cell]:
@@ -520,8 +529,8 @@ def _long(kept: Documents) -> Iterator[str]:
     runs = [run for run in kept["long"]["long_runs"] if run["status"] == Status.OK]
     others = [
         name
-        for name, method in METHODS.items()
-        if method.long_runs and name not in {run["method"] for run in runs}
+        for name in _studied(kept)
+        if METHODS[name].long_runs and name not in {run["method"] for run in runs}
     ]
     left_out = ", ".join(f"`{name}`" for name in others)
     span_s = float(load_scene(SCENE).exact.t_end)

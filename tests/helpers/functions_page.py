@@ -11,7 +11,11 @@ from reference.dataset.files import read_files
 from reference.dataset.manifest import FUNCTION
 from reference.scenes.shipped import golden_root
 
-PAGE, BEFORE, AFTER = ROOT / "docs/format.md", "### Golden functions that ship\n", "\n## ranges.json"
+PAGE, BEFORE, AFTER = (
+    ROOT / "docs/format.md",
+    "### Golden functions that ship\n",
+    "\n## ranges.json",
+)
 MOMENTS = 10_000  # evenly spread over the span, at which the farthest point is sought
 HEADS = (
     "scene",
@@ -29,9 +33,9 @@ largest distance from the vertical through the suspension. `python tests/helpers
 `pytest --long tests/reference/enclosure/test_function.py` compares a million random times with runs to 40 digits.
 
 An ulp of the length is the distance to the next double. Where the bob stays within 16 degrees of rest, z comes from x
-and y and is at most 1.1 ulp off. In wider swings z moves as far as x and y do, and has a series of its own. The farther
-a series goes, the more its evaluation rounds. So a piece on which z would round more than 1.95 ulp is halved: every z
-is within 2 ulp.
+and y and is little more than 1 ulp off. In wider swings z moves as far as x and y do, and has a series of its own. The
+farther a series goes, the more its evaluation rounds. So a piece on which z would round more than 1.95 ulp is halved:
+every z is within 2 ulp.
 """
 
 
