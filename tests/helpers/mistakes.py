@@ -132,8 +132,8 @@ def told(scene: Scene, times: np.ndarray, columns: dict[str, np.ndarray], allowe
         assert NO_CLOCK in str(error)
         return Told({"clock_offset"}, None, False)
     found = score.explanation
-    ids = [part.id for part in (*found.causes, *found.conventions)] if found else []
-    assert len(ids) == len(set(ids)), "a cause is told twice"
+    texts = [part.text for part in (*found.causes, *found.conventions)] if found else []
+    assert len(texts) == len(set(texts)), "a cause is told twice"
     words = {part.id for part in (*found.known, *found.conventions)} if found else set()
     alternatives = {
         word
