@@ -151,9 +151,12 @@ class Hypothesis(Claim):
 
     @property
     def untyped(self) -> list[Cause]:
-        """Those whose number nobody typed."""
+        """Those whose number nobody typed; beside such an input, as the drag of damped steps, no factor is typed."""
         inputs = [cause for cause in self.numbers if cause not in DRIFT]
-        return [cause for cause in inputs if not self._is_typed(cause)]
+        untyped = [cause for cause in inputs if not self._is_typed(cause)]
+        if all(cause.stage == "integrator" for cause in untyped):
+            return untyped
+        return [cause for cause in inputs if cause in untyped or self._is_factor(cause)]
 
     @property
     def untyped_inputs(self) -> list[Cause]:
@@ -222,12 +225,16 @@ class Hypothesis(Claim):
             return self.reading.program.kind != "sphere" and self._divides(value, doubt)
         if cause.id in LIKE_A_DRIFT and self._steps_roughly:
             return False
-        if has_few_digits(value, doubt):
-            return True
-        if not factors or cause.free != "rate":
+        return has_few_digits(value, doubt) or (factors and self._is_factor(cause))
+
+    def _is_factor(self, cause: Cause) -> bool:
+        """Return whether a number is the scene's rate times a factor that a person may have typed."""
+        if cause.free != "rate":
             return False
+        doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
         scene = self.case.right.rate
-        return has_few_digits(value / scene, doubt / abs(scene), FACTOR_DIGITS)
+        factor = self.reading.value(cause) / scene
+        return has_few_digits(factor, doubt / abs(scene), FACTOR_DIGITS)
 
     @property
     def _steps_roughly(self) -> bool:

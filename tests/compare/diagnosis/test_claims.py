@@ -198,6 +198,24 @@ def test_beside_a_number_that_nobody_typed_no_either_is_certain() -> None:
     assert not any("site.latitude" in word for word in stages(found))
 
 
+def test_beside_a_number_that_nobody_typed_a_factor_is_not_certain() -> None:
+    """Semi-implicit Euler whose velocity loses a part of 10,000 each step, and so the push of the Coriolis force."""
+    step, square, coriolis = 0.86 / 73, 9.8 / 67, 0.02 * math.sin(math.pi / 4)
+    place, velocity = 0.335 + 0.268j, 0j
+    printed = []
+    for count in range(524 * 73):
+        if count % 73 == 0:
+            printed.append((place.real, place.imag))
+        velocity += step * (-square * place - 1j * coriolis * velocity)
+        place += step * velocity
+        velocity *= 0.9999
+    fields = ["site.latitude=45", "site.rotation_rate=0.01", "site.gravity=9.8", "release.x=0.335"]
+    scene = paris(*fields, "site.gravity_is=effective", "release.y=0.268")
+    found = explained(np.array(printed), 0.86 * np.arange(524), scene)
+    assert {"linear_g", "integrator_semi_implicit_euler"} <= found.words
+    assert "site.rotation_rate" not in found.words
+
+
 def test_a_map_of_a_column_that_is_hardly_needed_is_not_certain() -> None:
     """A y that is too large by 4e-6 of itself, beside an error within the tolerance."""
     right = rows()
