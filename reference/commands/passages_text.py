@@ -44,7 +44,10 @@ def gate_hint(ranges: dict[str, Any], word: str) -> str:
     gate = ranges.get("gate_across")
     if word != LOWEST or not gate:
         return ""
-    return f'. A proof usually reaches further for --section "{gate}", across the swing, whose passages are nearly the same'
+    return (
+        f'. A proof usually reaches further for --section "{gate}", across the swing, '
+        "whose passages are nearly the same"
+    )
 
 
 def interval(ends: Sequence[str] | None, unit: str) -> str:

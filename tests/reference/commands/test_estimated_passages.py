@@ -37,16 +37,24 @@ HIS_TABLE_S = {
 }
 
 
-def estimated(wanted_s=None, changes=None):
-    """Return the document of passage 50, with a wanted width or without one."""
-    scene = parse_scene(MUSEUM).with_values(changes or {})
-    asked = Asked(NUMBER, None if wanted_s is None else Fraction(wanted_s))
-    return PassageEstimates(scene, WIDTHS, [asked], LONGEST_S).document(GATE, asked)
+def estimates_of(scene):
+    return PassageEstimates(scene, WIDTHS, [Asked(NUMBER)], LONGEST_S)
 
 
 @pytest.fixture(scope="module")
-def to_five_hundredths():
-    return estimated("0.05")
+def estimates():
+    return estimates_of(parse_scene(MUSEUM))
+
+
+def enough_for(estimates, wanted_s):
+    """Return which widths suffice for passage 50 to have half of a width, in s."""
+    document = estimates.document(GATE, Asked(NUMBER, Fraction(wanted_s)))
+    return document["enough_by_estimate"]
+
+
+@pytest.fixture(scope="module")
+def passage(estimates):
+    return estimates.document(GATE, Asked(NUMBER))
 
 
 def half_width_at_corners_s(widths):
@@ -72,8 +80,8 @@ def narrower(widths):
     return {**WIDTHS, **{name: text.removeprefix("±") for name, text in widths.items()}}
 
 
-def test_each_input_moves_the_passage_as_the_technician_found(to_five_hundredths):
-    limits = to_five_hundredths["limits"]
+def test_each_input_moves_the_passage_as_the_technician_found(passage):
+    limits = passage["limits"]
     assert {name: float(limit["moves_s"]) for name, limit in limits.items()} == {
         name: pytest.approx(size_s, rel=0.01) for name, size_s in HIS_TABLE_S.items()
     }
@@ -82,27 +90,25 @@ def test_each_input_moves_the_passage_as_the_technician_found(to_five_hundredths
     assert sorted(shares, key=shares.get, reverse=True) == list(HIS_TABLE_S)
 
 
-def test_each_input_moves_the_passage_as_formulas_say(to_five_hundredths):
-    t_s = to_five_hundredths["estimate_s"]
+def test_each_input_moves_the_passage_as_formulas_say(passage):
+    t_s = passage["estimate_s"]
     decay = 0.00115525 * t_s
     mean_square = -expm1(-decay) / decay
     by_angle_s = t_s / 16 * (radians(5.5) ** 2 - radians(4.5) ** 2) / 2 * mean_square
-    moved = {
-        name: float(limit["moves_s"]) for name, limit in to_five_hundredths["limits"].items()
-    }
+    moved = {name: float(limit["moves_s"]) for name, limit in passage["limits"].items()}
     assert moved["pendulum.length"] == pytest.approx(t_s / 2 * 0.005 / 12.3, rel=0.01)
     assert moved["site.gravity"] == pytest.approx(t_s / 2 * 0.001 / 9.81202, rel=0.01)
     assert moved["release.angle"] == pytest.approx(by_angle_s, rel=0.01)
 
 
-def test_the_range_is_the_worst_case(to_five_hundredths):
-    assert to_five_hundredths["estimate_range_s"] == ["174.129", "174.248"]
-    assert to_five_hundredths["estimate_plus_minus_s"] == ["174.188", "0.059"]
+def test_the_range_is_the_worst_case(passage):
+    assert passage["estimate_range_s"] == ["174.129", "174.248"]
+    assert passage["estimate_plus_minus_s"] == ["174.188", "0.059"]
     assert half_width_at_corners_s(WIDTHS) == pytest.approx(0.0593, abs=1e-4)
 
 
-def test_a_width_that_suffices_alone_does_and_a_little_more_does_not(to_five_hundredths):
-    enough = to_five_hundredths["enough_by_estimate"]
+def test_a_width_that_suffices_alone_does_and_a_little_more_does_not(estimates):
+    enough = enough_for(estimates, "0.05")
     assert enough["is_within"] is False and enough["together"] is None
     alone = enough["alone"]
     assert alone["pendulum.length"]["width"] == "±0.0036"
@@ -115,19 +121,19 @@ def test_a_width_that_suffices_alone_does_and_a_little_more_does_not(to_five_hun
         assert half_width_at_corners_s(narrower({name: str(float(wider))})) > 0.05
 
 
-def test_an_input_that_does_not_suffice_even_if_exact_is_not_advised(to_five_hundredths):
-    alone = to_five_hundredths["enough_by_estimate"]["alone"]
+def test_an_input_that_does_not_suffice_even_if_exact_is_not_advised(estimates):
+    alone = enough_for(estimates, "0.05")["alone"]
     assert alone["site.gravity"] == {"width": None, "if_exact_half_width_s": "0.0504"}
     assert alone["release.azimuth"] == {"width": None, "if_exact_half_width_s": "0.0593"}
 
 
-def test_a_passage_that_is_within_the_wanted_width_needs_nothing():
-    enough = estimated("0.06")["enough_by_estimate"]
+def test_a_passage_that_is_within_the_wanted_width_needs_nothing(estimates):
+    enough = enough_for(estimates, "0.06")
     assert enough == {"is_within": True, "alone": {}, "together": None}
 
 
-def test_if_no_input_suffices_alone_those_that_matter_are_divided_by_one_factor():
-    enough = estimated("0.01")["enough_by_estimate"]
+def test_if_no_input_suffices_alone_those_that_matter_are_divided_by_one_factor(estimates):
+    enough = enough_for(estimates, "0.01")
     assert not any(one["width"] for one in enough["alone"].values())
     together = enough["together"]
     assert set(together) == {"pendulum.length", "site.gravity", "release.angle"}
@@ -139,12 +145,15 @@ def test_if_no_input_suffices_alone_those_that_matter_are_divided_by_one_factor(
     assert half_width_at_corners_s(narrower(together)) <= 0.01
 
 
-def test_without_a_wanted_width_nothing_is_advised():
-    assert "enough_by_estimate" not in estimated()
+def test_without_a_wanted_width_nothing_is_advised(passage):
+    assert "enough_by_estimate" not in passage
 
 
 def test_a_passage_that_may_come_after_the_end_of_the_run_has_its_range():
-    early = estimated(changes={"run.t_end": "174.2", "run.grid_step": "174.2"})
-    assert early["estimate_range_s"] == ["174.129", "174.248"]
-    late = estimated(changes={"run.t_end": "174.1", "run.grid_step": "174.1"})
-    assert late == {"reason": "none: the run has 49"}
+    scene = parse_scene(MUSEUM)
+    document = {}
+    for t_end in ("174.2", "174.1"):
+        ending = scene.with_values({"run.t_end": t_end, "run.grid_step": t_end})
+        document[t_end] = estimates_of(ending).document(GATE, Asked(NUMBER))
+    assert document["174.2"]["estimate_range_s"] == ["174.129", "174.248"]
+    assert document["174.1"] == {"reason": "none: the run has 49"}
