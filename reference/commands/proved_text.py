@@ -63,8 +63,9 @@ def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
         yield from passage_lines(ranges)
         yield ""
     yield from _interval_lines(ranges)
-    yield ""
-    yield from paragraph(_use(ranges), "  ")
+    if _has_estimates(ranges):
+        yield ""
+        yield from paragraph(_use(ranges), "  ")
     if ranges["passages"]:
         yield from passage_limit_lines(ranges)
     else:
@@ -76,6 +77,12 @@ def ranges_lines(ranges: dict[str, Any]) -> Iterator[str]:
             yield from _run_lines(ranges, narrowing)
         else:
             yield from passage_proof_lines(ranges, name, narrowing)
+
+
+def _has_estimates(ranges: dict[str, Any]) -> bool:
+    """Return whether anything is estimated for uncertain inputs."""
+    estimated = ["estimate_range_s" in passage for passage in ranges["passages"]]
+    return bool(ranges["first_order"]) or any(estimated)
 
 
 def _use(ranges: dict[str, Any]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, exp, expm1, radians
+from math import cos, degrees, exp, expm1, radians, sin, sqrt
 
 import pytest
 
@@ -58,6 +58,22 @@ def test_the_precession_is_moved_by_less_than_the_proof_of_it_is_wide(effects):
     by_latitude = 15.041 * cos(radians(51.48)) * radians(0.005)
     assert by_latitude < moved.high < 0.01
     assert by_latitude < -moved.low < 0.01
+
+
+@pytest.mark.parametrize(("t_end", "by_page"), [("180", 0.94), ("3600", 0.25)])
+def test_a_sideways_speed_turns_the_plane_as_airy_says(t_end, by_page):
+    """The figures of docs/measured.md: 1.9 mm/s, of an ellipse that shrinks with the swing."""
+    frequency = sqrt(9.812 / 12.3)
+    length_m = 12.3 * sin(radians(5))
+    width_m = 1.9e-3 / frequency
+    decay = 0.0011552 * float(t_end)
+    mean_area = length_m * width_m * -expm1(-decay) / decay
+    airy = degrees(3 / 8 * frequency * mean_area / 12.3**2) * 3600
+    rate = degrees(1.9e-3 / length_m)
+    scene = parse_scene({**MUSEUM, "run": {"t_end": t_end}})
+    moved = swing_effects(scene, {"release.azimuth_rate": f"{rate:.5f}"}).precession.together
+    assert moved.half_width == pytest.approx(airy, rel=0.02)
+    assert round(moved.half_width, 2) == by_page
 
 
 def test_the_document_has_the_middle_and_half_the_width_of_each_range():
