@@ -117,8 +117,9 @@ class PassageEstimates:
         if effects.half_width <= wanted_s:
             return {"is_within": True, "alone": {}, "together": None}
         alone = {}
-        for name, effect in effects.by_input.items():
-            others_s = effects.half_width - effect.half_width
+        shares = effects.shares
+        for name in sorted(shares, key=lambda name: -shares[name]):
+            others_s = effects.half_width - effects.by_input[name].half_width
             width = self._width_for(passage, [name], effects, wanted_s)
             alone[name] = {
                 "width": width and f"±{width[name]}",

@@ -62,7 +62,7 @@ def passage_limit_lines(ranges: dict[str, Any]) -> Iterator[str]:
             continue
         name = passage_name(passage["section"], passage["number"])
         yield ""
-        yield from paragraph(f"Which input limits {name} (estimates):", "  ")
+        yield from paragraph(f"Which input limits {name}, by estimate:", "  ")
         moves = ("moves_s", "moves_error_s")
         yield from limit_table(passage["limits"], ranges["uncertain"], moves)
         if "enough_by_estimate" in passage:
@@ -123,7 +123,7 @@ def _enough(passage: dict[str, Any]) -> str:
     exact = ", ".join(_reached(too_little))
     text = f"By estimate, no single input suffices for {wanted}, even if exact: {exact}."
     if enough["together"]:
-        text += f" Narrow {widths_in_words(enough['together'])}."
+        text += f" Together these suffice: {widths_in_words(enough['together'])}."
     return text
 
 
@@ -168,7 +168,9 @@ def passage_proof_lines(
     yield ""
     enough = narrowing["enough"]
     if enough is None:
-        text = f"{NOT_EVEN} it is not proved{wanted}. The estimate still holds."
+        text = f"{NOT_EVEN} it is not proved{wanted}."
+        if "estimate_range_s" in passage:
+            text += " The estimate still holds."
     elif enough:
         text = f"To prove it{wanted}, narrow {widths_in_words(enough)}."
     else:

@@ -185,7 +185,7 @@ def _limit_lines(ranges: dict[str, Any]) -> Iterator[str]:
         return
     yield ""
     yield from paragraph(
-        f"Which input limits the period over {ranges['estimated_over_s']} s (estimates):", "  "
+        f"Which input limits the period over {ranges['estimated_over_s']} s, by estimate:", "  "
     )
     moves = ("moves_period_s", "moves_period_error_s")
     yield from limit_table(ranges["limits"], ranges["uncertain"], moves)

@@ -253,10 +253,11 @@ def test_a_passage_that_is_not_proved_has_an_estimate_and_the_input_to_narrow(
 def test_what_to_measure_stands_before_what_a_proof_needs(with_passages):
     """Two questions, which nobody is to take for one."""
     ranges = with_passages["ranges"]
+    assert _too_wide("\n".join(ranges_lines(ranges)), WIDEST) == []
     told = text_of(ranges)
     assert "Use the estimates to decide what to measure." in told
     # the tables are those of what was asked for
-    assert "Which input limits passage 12 of gate 135 (estimates)" in told
+    assert "Which input limits passage 12 of gate 135, by estimate:" in told
     assert "limits the period" not in told and "Derivatives" not in told
     # by estimate ±0.014 s, and yet not proved
     assert float(ranges["passages"][0]["estimate_plus_minus_s"][1]) < 0.1
