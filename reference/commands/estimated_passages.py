@@ -120,9 +120,9 @@ class PassageEstimates:
         shares = effects.shares
         for name in sorted(shares, key=lambda name: -shares[name]):
             others_s = effects.half_width - effects.by_input[name].half_width
-            width = self._width_for(passage, [name], effects, wanted_s)
+            widths = self._width_for(passage, [name], effects, wanted_s)
             alone[name] = {
-                "width": width and f"±{width[name]}",
+                "width": f"±{widths[name]}" if widths else None,
                 "if_exact_half_width_s": f"{others_s:.3g}",
             }
         together = None
@@ -133,7 +133,8 @@ class PassageEstimates:
                 if effect.half_width > _NEGLIGIBLE * wanted_s
             ]
             widths = self._width_for(passage, matter, effects, wanted_s)
-            together = widths and {name: f"±{width}" for name, width in widths.items()}
+            if widths:
+                together = {name: f"±{width}" for name, width in widths.items()}
         return {"is_within": False, "alone": alone, "together": together}
 
     def _width_for(
