@@ -75,6 +75,14 @@ def _gates_along_the_swing(scene: Scene) -> Iterator[str]:
             )
 
 
+def gate_across(scene: Scene) -> str | None:
+    """Return the gate across the first swing, to the degree, as a section's word; None if it is nearly round."""
+    swing_deg = _swing_azimuth_deg(scene)
+    if swing_deg is None:
+        return None
+    return f"gate {round(swing_deg + 90) % 180}"
+
+
 def _swing_azimuth_deg(scene: Scene) -> float | None:
     """Return the azimuth of the long axis of the first swing, of small amplitude, about the rest position.
 

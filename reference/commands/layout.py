@@ -69,6 +69,12 @@ def facts(pairs: Iterable[Fact]) -> list[str]:
     return lines
 
 
+def enumerated(texts: Sequence[str]) -> str:
+    """Return texts as a phrase: a, b and c."""
+    *first, last = texts
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 @dataclass(frozen=True)
 class TextColumn:
     """A column of a table: the lines of its head, and its cells; numbers are aligned right."""

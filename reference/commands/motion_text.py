@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..numbers.precision import digits_that_hold
@@ -22,8 +22,16 @@ _ERRORS = {
 }
 
 
-def motion_facts(motion: dict[str, Any]) -> Iterator[Fact]:
-    """Yield the numbers of a motion, to the digits that their errors justify, and why some are left out."""
+def motion_facts(
+    motion: dict[str, Any], ranges: Mapping[str, Sequence[str]] | None = None
+) -> Iterator[Fact]:
+    """Yield the numbers of a motion, to the digits that their errors justify, and why some are left out.
+
+    Args:
+        motion: in the form of --json.
+        ranges: for uncertain inputs: the middle of each number's range, and half of its width.
+    """
+    ranges = ranges or {}
     if "reason" in motion:
         yield "no period", motion["reason"]
         return
@@ -31,7 +39,14 @@ def motion_facts(motion: dict[str, Any]) -> Iterator[Fact]:
         if name not in motion:
             continue
         label, unit = QUANTITIES[name]
-        yield label, f"{_number(motion[name], motion[error_name])} {unit}{_way(name, motion)}"
+        way = ""
+        if name == "precession_deg_per_h":
+            way = _way(motion[name], motion[error_name], ranges.get(name))
+        if name in ranges:
+            yield label, f"{' ±'.join(ranges[name])} {unit}{way}"
+            continue
+        own = f"{_number(motion[name], motion[error_name])} {unit}{way}"
+        yield label, f"{own}, of the inputs without their widths" if ranges else own
     yield from left_out_facts(motion["left_out"])
 
 
@@ -41,11 +56,19 @@ def _number(value: float, error: float) -> str:
     return f"0 {text}" if text.startswith("±") else text
 
 
-def _way(name: str, motion: dict[str, Any]) -> str:
-    """Return which way the plane turns, seen from above, where that is known."""
-    if name != "precession_deg_per_h" or abs(motion[name]) <= motion[_ERRORS[name]]:
+def _way(rate: float, error: float, plus_minus: Sequence[str] | None) -> str:
+    """Return which way the plane turns, seen from above, where that is known.
+
+    Args:
+        rate: of the turn, east to north.
+        error: of the rate.
+        plus_minus: the middle of the range that uncertain inputs leave, and half of its width.
+    """
+    if plus_minus:
+        rate, error = map(float, plus_minus)
+    if abs(rate) <= error:
         return ""
-    return ", clockwise" if motion[name] < 0 else ", anticlockwise"
+    return ", clockwise" if rate < 0 else ", anticlockwise"
 
 
 def left_out_facts(reasons: dict[str, str]) -> Iterator[Fact]:

@@ -1,7 +1,8 @@
-"""Which uncertain input to measure better, and how well, found by proofs with narrower inputs.
+"""Which uncertain input a proof needs to be narrower, and how much, found by proofs with narrower inputs.
 
 First-order shares would not do: most of a wide interval is what the proof loses, which grows with the square of
-the widths. A proof with a narrower input measures both.
+the widths. A proof with a narrower input measures both. What the pendulum itself needs is estimated in
+`effects` and `estimated_passages`.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from .progress import Move
 
 _TENTH = 10
 _NARROWER = (2, 5, 10, 20, 50, 100)  # factors that are tried, in turn
+_NEGLIGIBLE = 0.01  # a share of an estimate below which a proof is tried without a narrower input
 _AFTER = Fraction(101, 100)  # of a passage's time: where the proofs of this passage end
 
 Widths = Mapping[str, str]
@@ -67,10 +69,12 @@ class _Proved(NamedTuple):
     Attributes:
         holds_s: up to which time it holds.
         half_width_s: half of the width of the interval of a passage; infinite if there is none.
+        reason: why there is none; "" if there is one, or no passage is sought.
     """
 
     holds_s: float
     half_width_s: float = math.inf
+    reason: str = ""
 
     def is_within(self, wanted_s: float) -> bool:
         """Return whether the passage has an interval, which is no wider than wanted."""
@@ -92,8 +96,8 @@ class Narrowing:
         self._widths = widths
         self._report = report
         self._done = 0
-        # each goal takes one proof for each input, and then some until one suffices
-        self._most = goals * (len(widths) + len(_NARROWER))
+        # each goal takes one proof for each input, some until one suffices, and one with fewer inputs
+        self._most = goals * (len(widths) + len(_NARROWER) + 1)
 
     def for_the_run(self, holds_s: float) -> dict[str, Any]:
         """Return how far the proof reaches with each single input known ten times better, and which widths suffice.
@@ -147,9 +151,9 @@ class Narrowing:
             try:
                 interval = interval_alone(part, widths, word, number, self._share_of(t_end_s))
             except BoxTooWideError as error:
-                return _Proved(error.holds_s)
+                return _Proved(error.holds_s, reason=ends_before(error.holds_s))
             if isinstance(interval, str):
-                return _Proved(t_end_s)
+                return _Proved(t_end_s, reason=interval)
             return _Proved(t_end_s, float(interval.high - interval.low) / 2)
 
         alone = self._alone(measured)
@@ -163,6 +167,7 @@ class Narrowing:
                     "width": self._text(name, _TENTH),
                     "half_width_s": _or_none(alone[name].half_width_s),
                     "holds_s": alone[name].holds_s,
+                    "reason": alone[name].reason,
                 }
                 for name in names
             ],
@@ -173,9 +178,16 @@ class Narrowing:
         wanted_s = float(passage.get("wanted_s", "inf"))
         found["enough"] = {}
         if not is_proved or half_width_s > wanted_s:
-            found["enough"], _ = self._enough(
-                measured, alone, names[0], lambda proved: proved.is_within(wanted_s)
-            )
+
+            def suffices(proved: _Proved) -> bool:
+                return proved.is_within(wanted_s)
+
+            enough, _ = self._enough(measured, alone, names[0], suffices)
+            if enough and len(enough) > 1:
+                fewer = _with_a_share(enough, passage)
+                if fewer and suffices(self._measured(measured, self._with(fewer))):
+                    enough = fewer
+            found["enough"] = enough
         return found
 
     def _share_of(self, t_end_s: float) -> Report:
@@ -237,6 +249,10 @@ class Narrowing:
             narrower[name] = decimal(Fraction(narrower[name]) / factor)
         return narrower
 
+    def _with(self, texts: Widths) -> dict[str, str]:
+        """Return the widths, those of some inputs replaced by widths with their sign."""
+        return {**self._widths, **{name: text.removeprefix("±") for name, text in texts.items()}}
+
     def _text(self, name: str, factor: int) -> str:
         """Return the width of an input divided by a factor, with its sign."""
         return f"±{decimal(Fraction(self._widths[name]) / factor)}"
@@ -245,6 +261,22 @@ class Narrowing:
 def _least_factor(needed_s: float, holds_s: float) -> float:
     """Return a factor below which no narrower inputs help: a proof holds no longer than in proportion."""
     return needed_s / holds_s if holds_s > 0 else 1.0
+
+
+def ends_before(holds_s: float) -> str:
+    """Return why a passage is not proved if the proof ends before it."""
+    return f"the proof ends at {holds_s:.4g} s"
+
+
+def _with_a_share(widths: Widths, passage: Mapping[str, Any]) -> dict[str, str]:
+    """Return the widths of the inputs that move a passage by estimate; none if all do, or none is known to."""
+    limits = passage.get("limits", {})
+    fewer = {
+        name: width
+        for name, width in widths.items()
+        if name in limits and limits[name]["share"] > _NEGLIGIBLE
+    }
+    return fewer if len(fewer) < len(widths) else {}
 
 
 def _half_width_s(passage: Mapping[str, Any]) -> float:

@@ -20,9 +20,10 @@ from ..solver.ranges import Ranges
 from ..solver.swing import Ends
 from .layout import Fact
 
+LOWEST = "lowest"
 _FIRST = 3  # passages that are printed if no numbers are asked for
 _DIGITS = 12
-_MORE = 4  # swings after the one that a passage is expected in
+MORE_SWINGS = 4  # after the one that a passage is expected in
 
 
 @dataclass(frozen=True)
@@ -78,17 +79,23 @@ def passage_interval(ranges: Ranges, word: str, number: int) -> Ends | str:
     if any(low < time[0] for low, _, _ in zeros.possible for time in times[number - 1 : number]):
         return "an earlier one is not decided, so that its number is open"
     if number > len(times):
-        return f"only {len(times)} are proved in {float(ranges.scene.run.t_end):.4g} s"
+        reach = f"{float(ranges.scene.run.t_end):.4g} s"
+        decided = f"only the first {len(times)} are" if times else "none is"
+        if zeros.possible:
+            return f"{decided} decided, though the motion is proved up to {reach}"
+        return f"{decided} sure to come in the {reach} that are proved"
     return Ends(*times[number - 1])
 
 
 def passage_name(word: str, number: int) -> str:
     """Return the name of a passage."""
-    return f"transit {number}" if word == XDOT else f"passage {number} of {word}"
+    if word == XDOT:
+        return f"transit {number} (turning point in x)"
+    return f"passage {number} of {word}"
 
 
 def computed_passages(
-    scene: Scene, asked: Sequence[Asked], period_s: float | None
+    scene: Scene, asked: Sequence[Asked], period_s: float | None, digits: int = _DIGITS
 ) -> list[dict[str, Any]]:
     """Return passages of a scene with exact inputs, each with its time and an estimate of its error.
 
@@ -96,6 +103,7 @@ def computed_passages(
         scene: the scene.
         asked: the passages of each of its sections.
         period_s: of a swing; None if there is none, and the whole run is solved.
+        digits: of the run.
     """
     from ..solver.solve import solve
 
@@ -103,12 +111,12 @@ def computed_passages(
     if period_s is not None:
         # a section is passed once in a swing, or twice
         last = max(one.number for one in asked)
-        until_s = (last + _MORE) * period_s
+        until_s = (last + MORE_SWINGS) * period_s
         if until_s < float(t_end):
             t_end = f"{until_s:.6g}"
     settings = {"run.transits": "true", "run.t_end": t_end, "run.grid_step": t_end}
     try:
-        solution = solve(scene.with_values(settings), level="self_consistent", digits=_DIGITS)
+        solution = solve(scene.with_values(settings), level="self_consistent", digits=digits)
     except FoucaultError as error:
         return [{"section": word, "reason": str(error)} for word in section_words(scene)]
     return [

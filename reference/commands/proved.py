@@ -17,13 +17,15 @@ from ..scenes.scene import Scene
 from ..solver.ranges import Intervals, Ranges
 from ..solver.solve import solve
 from ..solver.swing import HOUR, Ends, Swing, left_out
-from ..solver.uncertain import exact_texts, prove_ranges, widths_of
+from ..solver.uncertain import prove_ranges
 from ..system.workers import Emit
-from .effects import effects_document
-from .narrowing import Narrowing, ending_after, interval_alone, reach_s
+from .cautions import gate_across
+from .effects import rounded_down
+from .estimated_passages import PassageEstimates
+from .narrowing import Narrowing, ending_after, ends_before, interval_alone, reach_s
 from .passages import (
+    LOWEST,
     Asked,
-    computed_passages,
     passage_interval,
     passage_name,
     section_words,
@@ -41,6 +43,7 @@ _SWING = {
 _MEAN = ("period_s", "precession_deg_per_h", "full_turn_h")  # of uncertain inputs
 # powers of ten by which the widths are smaller for the derivatives
 _CLOSER = 6
+_PROVABLE_DIGITS = 3  # of the end of a run that is proved
 _TOO_UNCERTAIN = "these inputs are too uncertain for a proof"
 _NO_SLOPES = {"s_per_unit": None, "deg_per_h_per_unit": None}
 _TRIES = 5  # ends of a run that are tried where the inputs are too uncertain for the whole
@@ -80,42 +83,46 @@ def _texts(interval: Any) -> list[str] | None:
 
 
 def proved_ranges(
-    scene: Scene, widths: dict[str, str], asked: Sequence[Asked], begin: Show
+    scene: Scene,
+    widths: dict[str, str],
+    asked: Sequence[Asked],
+    estimates: dict[str, Any],
+    begin: Show,
 ) -> dict[str, Any]:
     """Return what is proved for uncertain inputs, over as much of the run as the proof reaches.
 
     These are intervals of period, precession, full turn, first transits and passages, and the
     passages that were asked for; beside them estimates over the whole run. If the inputs are too
-    uncertain for the whole run, or for a passage, `narrowing` tells which to know better.
+    uncertain for a proof of the whole run, or of a passage, `narrowing` tells which the proof needs
+    to be narrower.
 
     Args:
         scene: the scene.
-        widths: half of the width of each uncertain input.
+        widths: half of the width of each uncertain input, as decimals.
         asked: passages of each section.
+        estimates: of period and precession, from `effects_document`.
         begin: begins a piece of work that is shown to the user.
-
-    Raises:
-        InputError: an input, or a width.
     """
-    texts = exact_texts(widths_of(scene, widths))
     whole = _without_grid(scene)
     t_end_s = float(whole.run.t_end)
     # a look at the states alone costs little
-    holds_s = reach_s(whole, texts, begin(f"{scene.id}: how far a proof reaches", t_end_s))
+    holds_s = reach_s(whole, widths, begin(f"{scene.id}: how far a proof reaches", t_end_s))
     ranges = None
     slopes: dict[str, Any] = {}
     if holds_s > 0:
-        ranges, slopes = _ranges_and_slopes(whole, texts, holds_s, begin)
+        ranges, slopes = _ranges_and_slopes(whole, widths, holds_s, begin)
 
-    estimates = effects_document(whole, texts)
-    for name in texts:
-        estimates["limits"][name] |= slopes.get(name, _NO_SLOPES)
-    document = _ranges_document(whole, texts, ranges, asked) | estimates
+    document = _ranges_document(whole, widths, ranges, asked) | estimates
+    document["limits"] = {
+        name: limit | slopes.get(name, _NO_SLOPES) for name, limit in estimates["limits"].items()
+    }
     if slopes:
         document["derivatives_over_s"] = _provable(whole, holds_s).run.t_end
-    _estimate_unproved(whole, asked, document)
-    _prove_alone(whole, texts, document, begin)
-    narrowing = _narrowing(whole, texts, document, begin)
+    if LOWEST in section_words(whole):
+        document["gate_across"] = gate_across(whole)
+    _estimate_passages(whole, widths, asked, document)
+    _prove_alone(whole, widths, document, begin)
+    narrowing = _narrowing(whole, widths, document, begin)
     if narrowing:
         document["narrowing"] = narrowing
     return document
@@ -148,7 +155,7 @@ def _ending_at(scene: Scene, t_end: str) -> Scene:
 def _provable(scene: Scene, holds_s: float) -> Scene:
     """Return a scene whose run ends where a proof of it ends."""
     if holds_s < float(scene.run.t_end):
-        return _ending_at(scene, _rounded_down(holds_s))
+        return _ending_at(scene, rounded_down(holds_s, _PROVABLE_DIGITS))
     return scene
 
 
@@ -174,12 +181,6 @@ def _as_far_as_it_goes(
             # zeros near the end need a little more than states do
             holds_s = min(error.holds_s, 0.95 * float(part.run.t_end))
     return None
-
-
-def _rounded_down(time_s: float) -> str:
-    """Return a time above 0 with three digits."""
-    unit = 10.0 ** (math.floor(math.log10(time_s)) - 2)
-    return f"{math.floor(time_s / unit) * unit:.3g}"
 
 
 def _ranges_document(
@@ -250,24 +251,22 @@ def _timed(interval: Ends, period: Ends | None) -> dict[str, Any]:
     return {"t_s": list(ends(*interval)), "useless": useless}
 
 
-def _estimate_unproved(scene: Scene, asked: Sequence[Asked], document: dict[str, Any]) -> None:
-    """Add the estimated times of the passages that are not proved, those of the scene's own inputs."""
-    unproved = [passage for passage in document["passages"] if "t_s" not in passage]
-    if not unproved:
+def _estimate_passages(
+    scene: Scene, widths: dict[str, str], asked: Sequence[Asked], document: dict[str, Any]
+) -> None:
+    """Add to the passages their estimated times, and which inputs limit these."""
+    if not document["passages"]:
         return
     period = document["first_order"].get("period_s")
     longest_s = float(period[1]) if period else None
-    computed = {}
-    for passage in computed_passages(scene, asked, longest_s):
-        if "number" in passage:
-            computed[passage["section"], passage["number"]] = passage
-    for passage in unproved:
-        own = computed.get((passage["section"], passage["number"]), {})
-        if "t_s" in own:
-            passage["estimate_s"] = own["t_s"]
-            passage["estimate_error_s"] = own["t_error_s"]
-        elif "reason" in own:
-            passage["reason"] = f"none: {own['reason']}"
+    estimates = PassageEstimates(scene, widths, asked, longest_s)
+    every = [(word, one) for word in section_words(scene) for one in asked]
+    for passage, (word, one) in zip(document["passages"], every, strict=True):
+        found = estimates.document(word, one)
+        if "t_s" in passage:
+            # what is proved comes, whatever is estimated
+            found.pop("reason", None)
+        passage.update(found)
 
 
 def _prove_alone(
@@ -289,7 +288,7 @@ def _prove_alone(
         try:
             interval = interval_alone(part, widths, word, number, report)
         except BoxTooWideError as error:
-            interval = f"the proof ends at {error.holds_s:.3g} s"
+            interval = ends_before(error.holds_s)
         if not isinstance(interval, str):
             passage.pop("reason", None)
             passage.update(_timed(_both(interval, passage.get("t_s")), own_period))

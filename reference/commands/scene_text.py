@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import log
 
 from ..scenes.scene import Scene, unit_of
-from .layout import Fact
+from .layout import Fact, enumerated
 from .progress import duration_in_words
 
 _READINGS = {
@@ -18,6 +18,10 @@ _GRAVITY = {
     "ellipsoid": "gravity alone (ellipsoid): the centrifugal force is added",
     "effective": "as measured along the plumb line (effective)",
 }
+# inputs that are named if they have no width; those of the release come to them
+_MEASURED = ("pendulum.length", "pendulum.drag", "site.latitude", "site.gravity")
+_UNCERTAIN_DIGITS = 6  # of the period of small swings, where inputs are uncertain
+_SEEN_M = 1e-6  # a rest position nearer to the vertical is not told apart from it by eye or tape
 # of a compass, clockwise from north
 _DIRECTIONS = (
     "north",
@@ -44,8 +48,16 @@ def title_of(scene: Scene) -> str:
     return f"{scene.id}: {scene.title}" if scene.title else scene.id
 
 
-def input_facts(scene: Scene, flag_meanings: dict[str, str]) -> Iterator[Fact]:
-    """Yield the inputs of a scene in words and with units, with a line for each flag and each uncertain input."""
+def input_facts(
+    scene: Scene, flag_meanings: dict[str, str], widths: Mapping[str, str]
+) -> Iterator[Fact]:
+    """Yield the inputs of a scene in words and with units, with a line for each flag and each uncertain input.
+
+    Args:
+        scene: the scene.
+        flag_meanings: its flags, and what they mean.
+        widths: half of the width of each input that is taken as uncertain.
+    """
     if scene.source:
         yield "source", scene.source
     for flag, meaning in flag_meanings.items():
@@ -59,13 +71,29 @@ def input_facts(scene: Scene, flag_meanings: dict[str, str]) -> Iterator[Fact]:
     yield "run", _run(scene)
     if scene.run.sections:
         yield "sections", ", ".join(scene.run.sections)
-    for name, width in scene.uncertain.items():
-        yield "uncertain", f"{name} ±{width.removeprefix('±')} {unit_of(name)}".rstrip()
+    for name, width in widths.items():
+        yield "uncertain", f"{name} ±{width} {unit_of(name)}".rstrip()
+    exact = _exact_beside(scene, widths)
+    if exact:
+        yield "without width", f"{enumerated(exact)}: taken as exact"
     yield "inputs", _READINGS[scene.inputs]
 
 
-def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
-    """Yield what follows from the inputs of a scene, such as its rest position, or that it has none."""
+def _exact_beside(scene: Scene, widths: Mapping[str, str]) -> list[str]:
+    """Return the inputs that somebody measures and that have no width, while others have one."""
+    if not widths:
+        return []
+    release = [name for name in scene.exact.by_name if name.startswith("release.")]
+    return [name for name in (*_MEASURED, *release) if name not in widths]
+
+
+def derived_facts(derived: dict[str, str], *, is_uncertain: bool = False) -> Iterator[Fact]:
+    """Yield what follows from the inputs of a scene, such as its rest position, or that it has none.
+
+    Args:
+        derived: the numbers, as text.
+        is_uncertain: whether inputs are. Then what is below all that they allow is left out.
+    """
     if "axis_distance_m" in derived:
         yield "Earth's axis", f"{derived['axis_distance_m']} m away"
     pull = f"{derived['pivot_gravity_m_s2']} m/s²"
@@ -74,11 +102,14 @@ def derived_facts(derived: dict[str, str]) -> Iterator[Fact]:
         normal = f"{derived['normal_gravity_m_s2']} m/s²"
         yield "normal gravity", f"{normal} at this latitude (GRS 80), effective"
     if "small_swing_period_s" in derived:
-        yield "small swing", f"{derived['small_swing_period_s']} s"
-    if "rest_y_m" in derived:
-        yield "hangs", _rest(derived)
-    else:
+        period_s = derived["small_swing_period_s"]
+        if is_uncertain:
+            period_s = f"{float(period_s):.{_UNCERTAIN_DIGITS}g}"
+        yield "small swing", f"{period_s} s"
+    if "rest_y_m" not in derived:
         yield "rest position", "none"
+    elif not (is_uncertain and abs(float(derived["rest_y_m"])) < _SEEN_M):
+        yield "hangs", _rest(derived)
 
 
 def _cord(scene: Scene) -> str:

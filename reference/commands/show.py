@@ -122,6 +122,8 @@ def _show(options: _ShowOptions) -> None:
         emit(document)
         return
     for number, part in enumerate(parts):
+        if not part.lines:
+            continue
         if number:
             typer.echo("")
         heading(part.title)
@@ -135,7 +137,7 @@ command = as_command(_ShowOptions, _show)
 
 
 class _Part(NamedTuple):
-    """A part of what is shown: for --json, and for people."""
+    """A part of what is shown: for --json, and for people; without lines it is for --json alone."""
 
     document: dict[str, Any]
     title: str
@@ -161,13 +163,14 @@ def _parts(scene: Scene, options: _ShowOptions) -> Iterator[_Part]:
     from .passages import asked_passages
 
     asked = asked_passages(options.passage)
-    widths = widths_by_name(options.uncertain, scene)
-    if widths is None:
+    words = widths_by_name(options.uncertain, scene)
+    widths = None
+    if words is None:
         _check_no_width(options.passage)
     else:
-        from ..solver.uncertain import widths_of
+        from ..solver.uncertain import exact_texts, widths_of
 
-        widths_of(scene, widths)
+        widths = exact_texts(widths_of(scene, words))
     _check_installed(scene, options)
     return _checked_parts(scene, options, asked, widths)
 
@@ -211,18 +214,26 @@ def _checked_parts(
     """Yield what is shown of a scene; the options are right."""
     from .motion_text import motion_facts
 
-    yield _inputs_part(scene, options)
+    yield _inputs_part(scene, options, widths)
     motion = _motion(scene)
-    title = (
-        f"Motion over {motion['over_s']} s, errors estimated" if "over_s" in motion else "Motion"
+    estimates = {}
+    if widths is not None:
+        from .effects import effects_document
+
+        estimates = effects_document(scene, widths)
+    ranges = estimates.get("first_order_plus_minus", {})
+    yield _Part(
+        {"motion": motion}, _motion_title(motion, ranges), facts(motion_facts(motion, ranges))
     )
-    yield _Part({"motion": motion}, title, facts(motion_facts(motion)))
 
     doubles = _doubles(scene)
     if doubles is not None:
         text = f"{doubles['in_words']}; {_COSTS[doubles['costs_most']]}"
-        pairs = [("agrees to", text)]
-        yield _Part({"doubles": doubles}, "A program in double precision, at best", facts(pairs))
+        lines = facts([("agrees to", text)])
+        # inputs that are not known exactly cost far more than rounding
+        if widths is not None:
+            lines = []
+        yield _Part({"doubles": doubles}, "A program in double precision, at best", lines)
 
     wants_passages = bool(options.section or options.passage)
     if wants_passages and widths is None:
@@ -244,10 +255,21 @@ def _checked_parts(
         title = f"Proved over {proved['over_s']} s"
         yield _Part({"proved": proved}, title, swing_lines(proved))
     if widths is not None:
-        yield _ranges_part(scene, options, asked, widths)
+        # without --passage the first ones are shown, which cost nothing
+        wanted = asked if options.passage else []
+        yield _ranges_part(scene, wanted, widths, estimates)
 
 
-def _inputs_part(scene: Scene, options: _ShowOptions) -> _Part:
+def _motion_title(motion: dict[str, Any], ranges: dict[str, Any]) -> str:
+    """Return the heading of period and precession."""
+    if "over_s" not in motion:
+        return "Motion"
+    if ranges:
+        return f"Motion over {motion['over_s']} s, ± what the uncertain inputs change (estimates)"
+    return f"Motion over {motion['over_s']} s, errors estimated"
+
+
+def _inputs_part(scene: Scene, options: _ShowOptions, widths: dict[str, str] | None) -> _Part:
     """Return the inputs of a scene, and what follows from them."""
     from .cautions import cautions
 
@@ -259,7 +281,8 @@ def _inputs_part(scene: Scene, options: _ShowOptions) -> _Part:
         "derived": derived,
         "warnings": cautions(scene, str(options.scene_word)),
     }
-    lines = [*facts(input_facts(scene, meanings)), "", *facts(derived_facts(derived))]
+    inputs = facts(input_facts(scene, meanings, widths or {}))
+    lines = [*inputs, "", *facts(derived_facts(derived, is_uncertain=widths is not None))]
     return _Part(document, title_of(scene), lines)
 
 
@@ -293,14 +316,17 @@ def _equations_part(compiled: dict[str, Any]) -> _Part:
 
 
 def _ranges_part(
-    scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str]
+    scene: Scene, asked: list[Asked], widths: dict[str, str], estimates: dict[str, Any]
 ) -> _Part:
-    """Return what is proved for uncertain inputs, or the reason why nothing can be proved."""
+    """Return what holds for uncertain inputs, or the reason why nothing can be proved; it takes long."""
     from ..solver.uncertain import need_proof
 
     try:
         need_proof()
-        ranges = _ranges(scene, options, asked, widths)
+        from .proved import proved_ranges
+
+        with progress() as begin:
+            ranges = proved_ranges(scene, widths, asked, estimates, begin)
     except NotInstalledError as error:
         return _Part({"ranges": {"reason": str(error)}}, "Ranges", paragraph(_LEFT_OUT, "  "))
     except UnreachableError as error:
@@ -309,18 +335,6 @@ def _ranges_part(
     from .proved_text import ranges_lines, ranges_title
 
     return _Part({"ranges": ranges}, ranges_title(ranges), ranges_lines(ranges))
-
-
-def _ranges(
-    scene: Scene, options: _ShowOptions, asked: list[Asked], widths: dict[str, str]
-) -> dict[str, Any]:
-    """Return what is proved for uncertain inputs; it takes long."""
-    from .proved import proved_ranges
-
-    # without --passage the first ones are shown, which cost nothing
-    wanted = asked if options.passage else []
-    with progress() as begin:
-        return proved_ranges(scene, widths, wanted, begin)
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:

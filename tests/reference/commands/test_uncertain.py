@@ -32,11 +32,14 @@ def test_generate_writes_ranges(tmp_path):
 
 def test_show_tells_period_and_first_transits():
     done = run("show", "paris", "--set", "run.t_end=120", *BOX)
-    shown = lines.part(done.output, "Ranges over 120 s, proved")
+    shown = lines.part(done.output, "Ranges over 120 s for all values")
     assert "period 16.43" in shown
     assert "transit 1 8.2177" in shown
+    assert "A transit is a turning point in x." in shown
+    # the estimate stands first
+    assert shown.index("estimate") < shown.index("proved")
     assert "Which input limits the period" in shown
-    assert "pendulum.length ±0.001 m 0.00012 s 99.6 %" in shown
+    assert "pendulum.length ±0.001 m ±0.00012 s 99.6 %" in shown
     assert "pendulum.length m 0.1226" in shown
     ranges = json.loads(run("show", "paris", "--set", "run.t_end=120", *BOX, "--json").stdout)[
         "ranges"
