@@ -1,6 +1,7 @@
 """Why a file is off, behind three doors: `diagnose` a file, `explain_change` of versions, `experiment` with a program.
 
-What runs programs needs heyoka, and is imported when one of these is called.
+What runs programs needs heyoka, and is imported when one of these is called. Sentences, advice and thresholds are here
+for the pages that say some of it by themselves.
 """
 
 from __future__ import annotations
@@ -10,29 +11,41 @@ from collections.abc import Callable, Sequence
 from reference import Scene
 
 from ..candidates.candidate import Candidate
+from . import thresholds
+from .advice import advice
 from .case import AS_IF, Explanation
+from .causes import ADDED_TWICE, CLOCK, EFFECTIVE
+from .claims import hedged
 from .conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from .document import explanation_document
 from .experiments.findings import MOST_RUNS, Experiment, Experiments, possible
 from .since import Since, Version, explain_change
 
 __all__ = [
+    "ADDED_TWICE",
     "AS_IF",
     "AXES_SAID",
+    "CLOCK",
+    "EFFECTIVE",
     "LENGTHS_SAID",
     "MOST_RUNS",
+    "THRESHOLDS",
     "TIMES_SAID",
     "Experiment",
     "Experiments",
     "Explanation",
     "Since",
     "Version",
+    "advice",
     "diagnose",
     "experiment",
     "explain_change",
     "explanation_document",
+    "hedged",
     "possible",
 ]
+
+THRESHOLDS = {name: value for name, value in vars(thresholds).items() if name.isupper()}
 
 
 def diagnose(rows: Candidate, scene: Scene, allowed_m: float) -> Explanation:

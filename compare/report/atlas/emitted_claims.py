@@ -13,10 +13,7 @@ from typing import get_args
 from reference.scenes.inputs import GravityIs
 
 from ...candidates.candidate import Deviation
-from ...diagnosis import thresholds
-from ...diagnosis.advice import advice
-from ...diagnosis.causes import ADDED_TWICE, CLOCK, EFFECTIVE
-from ...diagnosis.claims import hedged
+from ...diagnosis import ADDED_TWICE, CLOCK, EFFECTIVE, THRESHOLDS, advice, hedged
 from .form import LEGENDS
 
 _PLACE = LEGENDS["site"]
@@ -34,11 +31,10 @@ _ADVICE_ON_G = {
 @cache
 def emitted_claims() -> str:
     """Return the thresholds and the sentences as constants in JavaScript."""
-    numbers = {name: value for name, value in vars(thresholds).items() if name.isupper()}
     sentences = {"CLOCK_SAID": CLOCK, "LIKE_ONE_THAT": _hedge(), "MEANINGS_OF_G": _meanings_of_g()}
     lines = [
         f"const {name} = {json.dumps(value, ensure_ascii=False)};"
-        for name, value in (numbers | sentences).items()
+        for name, value in (THRESHOLDS | sentences).items()
     ]
     return "\n".join(
         ["// Emitted from compare/diagnosis by emitted_claims.py.", '"use strict";\n', *lines, ""]
