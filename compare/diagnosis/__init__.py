@@ -12,7 +12,7 @@ from reference import Scene
 
 from ..candidates.candidate import Candidate
 from . import thresholds
-from .advice import advice
+from .advice import advice_on
 from .case import AS_IF, Explanation
 from .causes import ADDED_TWICE, CLOCK, EFFECTIVE
 from .claims import hedged
@@ -36,7 +36,7 @@ __all__ = [
     "Explanation",
     "Since",
     "Version",
-    "advice",
+    "advice_on",
     "diagnose",
     "experiment",
     "explain_change",

@@ -122,7 +122,7 @@ HABITS = {  # of a file: words, what is said of it, what to do
 }
 
 
-def advice(word: str) -> str:
+def advice_on(word: str) -> str:
     """Return what to do about a cause, or about a habit of a file; "" where there is nothing to do."""
     family = next((family for family in FAMILIES if word.startswith(family)), word)
     habits = {one: what for words, (_, what) in HABITS.items() for one in words.split(", ")}

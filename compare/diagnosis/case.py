@@ -12,7 +12,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
-from .advice import advice
+from .advice import advice_on
 from .phasors import ComplexArray, sinc
 from .programs import NAMES, Program, SphericalPendulum
 from .thresholds import FINEST, RIVAL, ROUNDED
@@ -189,7 +189,7 @@ class Explanation:
 
 def _advised(part: Deviation) -> Iterator[str]:
     """Yield what to do about a convention or a cause that is certain."""
-    text = "" if part.stage in (AS_IF, EITHER) else advice(part.id)
+    text = "" if part.stage in (AS_IF, EITHER) else advice_on(part.id)
     if text:
         yield f"  → {text}"
 

@@ -13,16 +13,16 @@ from typing import get_args
 from reference.scenes.inputs import GravityIs
 
 from ...candidates.candidate import Deviation
-from ...diagnosis import ADDED_TWICE, CLOCK, EFFECTIVE, THRESHOLDS, advice, hedged
+from ...diagnosis import ADDED_TWICE, CLOCK, EFFECTIVE, THRESHOLDS, advice_on, hedged
 from .form import LEGENDS
 
 _PLACE = LEGENDS["site"]
 # what is said of a program whose g has a meaning that the form does not say, and what to do about it
 _SAID_OF_G = {"effective": EFFECTIVE, "ellipsoid": ADDED_TWICE}
 _ADVICE_ON_G = {
-    "effective": [advice("effective_gravity"), advice("no_tilt"), advice("no_lift")],
+    "effective": [advice_on("effective_gravity"), advice_on("no_tilt"), advice_on("no_lift")],
     "ellipsoid": [
-        advice("ellipsoid_gravity"),
+        advice_on("ellipsoid_gravity"),
         f"If your g is gravity alone, choose ellipsoid under {_PLACE}.",
     ],
 }
