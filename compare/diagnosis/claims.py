@@ -392,11 +392,21 @@ def with_rival_step(named: Explanation, stepped: Explanation) -> Explanation:
         return named
     if RIVAL * stepped.rest_m < named.rest_m:
         return stepped
+    return with_rival_steps(named, stepped.causes)
+
+
+def with_rival_steps(named: Explanation, rivals: Sequence[Deviation]) -> Explanation:
+    """Return an explanation in which its step, or one of others that make the same rows, is the cause."""
     own = [cause for cause in named.causes if cause.stage == "integrator"]
-    other = [cause for cause in stepped.causes if cause.stage == "integrator"]
-    if len(own) != 1 or len(other) != 1 or own[0].id == other[0].id:
+    if len(own) != 1:
         return named
-    alternatives = [Alternative(cause.id, cause.text) for cause in (*own, *other)]
-    either = one_of(alternatives, own[0].size_m)
-    causes = tuple(either if cause is own[0] else cause for cause in named.causes)
+    steps = {cause.id: cause for cause in (*rivals, *own) if cause.stage == "integrator"}
+    if len(steps) == 1:
+        return named
+    if len(steps) > ALTERNATIVES:
+        step = loose(own[0].size_m)
+    else:
+        alternatives = [Alternative(cause.id, cause.text) for cause in steps.values()]
+        step = one_of(alternatives, own[0].size_m)
+    causes = tuple(step if cause is own[0] else cause for cause in named.causes)
     return replace(named, causes=causes)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,20 +17,26 @@ from reference.numbers.precision import Array
 
 from ..observed.least_squares import by_differences, gauss_newton
 from .case import FileCase
-from .phasors import Phasors, fit_phasors
+from .phasors import METHODS, Phasors, fit_phasors
 from .programs import SphericalPendulum, phasors_of
 from .thresholds import NEEDED
 
 # statements of one step: v of one axis, x and y of both; an axis moved between the velocities makes
 # the same motion
 _ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
-# with a factor on both velocities in place of the drag
-_DAMPED = tuple(f"{order} factor" for order in _ORDERS)
 # positions with h²/2 a, then velocities with the mean of a before and after, both with the old
 # velocity
 _VERLET = "verlet"
 # half of the change of the velocities, the positions, the other half
 _LEAPFROG = "leapfrog"
+# v of both axes at once, and everything at once: methods that have a name, and no factor
+_NAMED = {
+    "v xy": "semi_implicit_euler",
+    "xy v": "semi_implicit_euler_drift",
+    "all": "explicit_euler",
+}
+# with a factor on both velocities after each step in place of the drag
+_DAMPED = tuple(f"{order} factor" for order in (*_ORDERS, _VERLET, _LEAPFROG, *_NAMED))
 _EXPLICIT = "both accelerations of the velocity before them,"
 _IN_TURN = (
     "semi-implicit Euler, its velocities updated one after the other, "
@@ -44,6 +49,7 @@ _TITLES = {
     "ve": ("leapfrog", f"velocity Verlet, {_EXPLICIT}"),
     "le": ("leapfrog", f"leapfrog, {_EXPLICIT}"),
 }
+_METHODS = {method.id: method.title for method in METHODS}
 _FINEST = 1e-4  # ωh: the shortest step that is tried
 _TRIED = 10  # numbers of steps that are tried at a time
 _NEWTON = 8  # Gauss-Newton steps of a fit
@@ -61,32 +67,45 @@ def _step_matrix(order: str, theta: Array, h: float) -> Array:
     length = theta[11]
     drag = theta[6]
     damping = 0.0 if "factor" in order else -drag
-    # by statement, the row of the state that it changes, and the rates by which it does
-    statements: dict[str, tuple[int, list[Any]]] = {
-        "vx": (2, [theta[5], 0.0, damping, 2 * theta[2], theta[3] * length]),
-        "vy": (3, [0.0, theta[5], -2 * theta[2], damping, theta[4] * length]),
-        "x": (0, [0.0, 0.0, 1.0, 0.0, 0.0]),
-        "y": (1, [0.0, 0.0, 0.0, 1.0, 0.0]),
-    }
-    accelerations = np.array([statements["vx"][1], statements["vy"][1]])
-    if order == _VERLET:
-        return _verlet(accelerations, h)
-    if order == _LEAPFROG:
-        return _leapfrog(accelerations, h)
-
-    matrix = np.eye(5)
-    for statement in order.removesuffix(" factor").replace("xy", "x y").split():
-        row, rates = statements[statement]
-        update = np.eye(5)
-        update[row] += h * np.array(rates)
-        matrix = update @ matrix
+    accelerations = np.array(
+        [
+            [theta[5], 0.0, damping, 2 * theta[2], theta[3] * length],
+            [0.0, theta[5], -2 * theta[2], damping, theta[4] * length],
+        ]
+    )
+    matrix = _undamped_matrix(order.removesuffix(" factor"), accelerations, h)
     if "factor" in order:
         matrix[2:4] *= 1 - drag * h
     return matrix
 
 
+def _undamped_matrix(order: str, accelerations: Array, h: float) -> Array:
+    """Return one step without a factor; `accelerations` are the rates of vx and vy, (2, 5)."""
+    if order == _VERLET:
+        return _verlet(accelerations, h)
+    if order == _LEAPFROG:
+        return _leapfrog(accelerations, h)
+
+    velocities = np.eye(5)[2:4]
+    # by statement, the rows of the state that it changes, and the rates by which it does
+    statements = {
+        "vx": ([2], accelerations[:1]),
+        "vy": ([3], accelerations[1:]),
+        "v": ([2, 3], accelerations),
+        "xy": ([0, 1], velocities),
+        "all": ([0, 1, 2, 3], np.concatenate([velocities, accelerations])),
+    }
+    matrix = np.eye(5)
+    for statement in order.split():
+        rows, rates = statements[statement]
+        update = np.eye(5)
+        update[rows] += h * rates
+        matrix = update @ matrix
+    return matrix
+
+
 def _verlet(accelerations: Array, h: float) -> Array:
-    """Return a step of velocity Verlet; `accelerations` are the rates of vx and vy, (2, 5)."""
+    """Return a step of velocity Verlet."""
     matrix = np.eye(5)
     matrix[:2] += h * np.eye(5)[2:4] + h * h / 2 * accelerations
     matrix[2:4] += h / 2 * (accelerations + accelerations @ matrix)
@@ -94,7 +113,7 @@ def _verlet(accelerations: Array, h: float) -> Array:
 
 
 def _leapfrog(accelerations: Array, h: float) -> Array:
-    """Return a step of leapfrog; `accelerations` are the rates of vx and vy, (2, 5)."""
+    """Return a step of leapfrog."""
     half_kick = np.eye(5)
     half_kick[2:4] += h / 2 * accelerations
     drift = np.eye(5)
@@ -127,7 +146,10 @@ class LinearSteps(SphericalPendulum):
     @property
     def title(self) -> tuple[str, str]:
         """The word of its method, and the name that people use."""
-        return _TITLES[self.method[:2]]
+        order = self.method.removesuffix(" factor")
+        if order in _NAMED:
+            return _NAMED[order], _METHODS[_NAMED[order]]
+        return _TITLES[order[:2]]
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x and y in m, shape (times, 2)."""

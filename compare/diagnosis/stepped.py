@@ -25,7 +25,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .claims import explanation_of, tested
+from .claims import explanation_of, tested, with_rival_steps
 from .families import fit_pendulum
 from .fitted import polished, readings_of
 from .hypotheses import Claim, Hypothesis
@@ -203,10 +203,11 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
 def of_loops(case: FileCase) -> Explanation | None:
     """Return the explanation of rows that a loop of statements made, one after the other; None if none did."""
     flat = case.in_the_plane()
-    for loop in likely_loops(flat):
+    loops = likely_loops(flat)
+    for loop in loops:
         explanation = _explanation_with(flat, loop)
         if explanation is not None:
-            return explanation
+            return with_rival_steps(explanation, [step_cause(one) for one in loops])
     return None
 
 
@@ -273,7 +274,7 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     without_steps = polished(case, best.reading)
     step = tested(
         Claim(case, residuals),
-        step_cause(motion.steps, motion.effect),
+        step_cause(motion.steps, largest(motion.effect)),
         rms(case.left(without_steps.program)),
     )
     if step is None:
@@ -282,12 +283,12 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
 
 
-def step_cause(steps: Steps | LinearSteps, effect: Array) -> Deviation:
-    """Return the cause that a program takes some steps; they move its rows by `effect` in m."""
+def step_cause(steps: Steps | LinearSteps, size_m: float = 0.0) -> Deviation:
+    """Return the cause that a program takes some steps; they move its rows by `size_m`."""
     word, title = steps.title
     step_s = steps.step_s
     text = f"integrates with {title} at a step of {step_s:.3g} s"
-    return Deviation(f"integrator_{word}", text, largest(effect), "integrator", step_s, step_s)
+    return Deviation(f"integrator_{word}", text, size_m, "integrator", step_s, step_s)
 
 
 @dataclass(frozen=True)

@@ -264,7 +264,7 @@ class JointCase(FileCase):
             effect = stepped - pendulum.rows(theta, times, 2)
             rows = replace(case.rows, positions=case.rows.positions - effect)
             runs.append(replace(run, case=replace(case, rows=rows)))
-            causes.append(step_cause(run_steps, effect))
+            causes.append(step_cause(run_steps, largest(effect)))
         return JointCase.of(runs), causes[0]
 
     def explanation_of(self, reading: CauseReading, *besides: Deviation) -> Explanation:
