@@ -16,6 +16,7 @@ const EMPTY = "The box is empty. Paste what your program printed: a line t,x,y, 
 const AZIMUTH = Object.fromEntries(COMPASS.map((name) => [name, at(`${name}.meaning`).textContent]));
 
 let pendulum = null; // { title, texts } that the form has, without a mistake
+let address = ""; // the fragment that is this pendulum, or that the page was opened with
 let motion = null; // { worker, facts } of the pendulum that is shown
 let started = 0; // motions so far: of two the later one is shown
 let timer = null;
@@ -173,8 +174,8 @@ function take() {
     return;
   }
   pendulum = { title: plainTitle(at("title").value), texts };
-  const fragment = fragmentOf(pendulum.title, texts, fields);
-  if (location.hash.slice(1) !== fragment) history.replaceState(null, "", `#${fragment}`);
+  address = `#${fragmentOf(pendulum.title, texts, fields)}`;
+  if (location.hash !== address) history.replaceState(null, "", address);
   at("toml").textContent = tomlOf(pendulum.title, texts, fields);
   at("step").placeholder = String(sceneOf(texts, fields).run.grid_step);
   solvePendulum();
@@ -193,7 +194,14 @@ function takePreset(id) {
   take();
 }
 
+// Take a new address: another pendulum, or a section of this page, which leaves form and address as they are.
+function takeAddressChange() {
+  if (location.hash && at(location.hash.slice(1))) history.replaceState(null, "", address);
+  else takeAddress();
+}
+
 function takeAddress() {
+  address = location.hash;
   const { title, texts } = textsOfFragment(location.hash, fields);
   if (!Object.keys(texts).length) {
     at("preset").value = BEGIN;
@@ -304,6 +312,6 @@ at("csv").addEventListener("click", saveRows);
 at("copy").addEventListener("click", copyLink);
 at("save").addEventListener("click", () => save("pendulum.toml", at("toml").textContent, "application/toml"));
 at("direction").addEventListener("change", turnDirections);
-addEventListener("hashchange", takeAddress);
+addEventListener("hashchange", takeAddressChange);
 takeFiles(at("drop"), judgeFiles);
 takeAddress();

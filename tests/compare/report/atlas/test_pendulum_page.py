@@ -63,7 +63,8 @@ def test_the_page_has_the_lines_of_the_documentation(page):
     assert command.startswith("$ foucault score")
 
 
-WALK = r"""
+# what a visitor does is between these two
+BEGIN = r"""
 <script>
 (async () => {
   const told = {};
@@ -88,7 +89,31 @@ WALK = r"""
     at("judge").click();
     return verdict();
   };
+  const hold = (id, text) => { // type, and stay in the field
+    at(id).value = text;
+    at(id).dispatchEvent(new Event("input", { bubbles: true }));
+  };
+"""
+END = r"""
+  const all = { ...told, hacked: typeof hacked, violations };
+  document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
+})();
 
+// Rows of the motion that is shown, or of a changed one, through a function of x, y and t.
+function rowsNow(changes = {}) {
+  const texts = { ...textsOfForm(), ...changes };
+  const at_ = motionOf(integrate(problemOf(sceneOf(texts, fields)), 20, 2 ** -50));
+  return (header, map) => {
+    const lines = Array.from({ length: 121 }, (_, i) => {
+      const [x, y] = at_(i / 2);
+      return [i / 2, ...map(x, y, i / 2)].join(",");
+    });
+    return [header, ...lines, ""].join("\n");
+  };
+}
+</script></body>"""
+
+WALK = r"""
   await until(computed);
   told.title = at("title").value;
   told.toml = at("toml").textContent;
@@ -136,23 +161,8 @@ WALK = r"""
   at("direction").dispatchEvent(new Event("change", { bubbles: true }));
   told.bearing = [at("release.azimuth").value, textsOfForm()["release.azimuth"]];
 
-  const all = { ...told, hacked: typeof hacked, violations };
-  document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
-})();
+"""
 
-// Rows of the motion that is shown, or of a changed one, through a function of x, y and t.
-function rowsNow(changes = {}) {
-  const texts = { ...textsOfForm(), ...changes };
-  const at_ = motionOf(integrate(problemOf(sceneOf(texts, fields)), 20, 2 ** -50));
-  return (header, map) => {
-    const lines = Array.from({ length: 121 }, (_, i) => {
-      const [x, y] = at_(i / 2);
-      return [i / 2, ...map(x, y, i / 2)].join(",");
-    });
-    return [header, ...lines, ""].join("\n");
-  };
-}
-</script></body>"""
 
 
 @browser
@@ -167,7 +177,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
         "site.gravity_is": "effective",
         "evil": EVIL,
     }
-    script = WALK.replace("%s", EVIL)
+    script = (BEGIN + WALK + END).replace("%s", EVIL)
     told = in_browser(page, script, tmp_path, fragment=f"#{urlencode(asked)}")
     assert told["hacked"] == "undefined" and told["images"] == 0 and told["violations"] == []
     assert told["fits"] and told["fitsAfter"]
@@ -204,3 +214,31 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     assert told["preset"][0].startswith("80 degrees") and told["preset"][1] == "80"
     assert "release.angle=80" in told["preset"][2]
     assert told["bearing"] == ["60", "30"]
+
+
+JUMPS = r"""
+  await until(computed);
+  await type("pendulum.length", "12.5");
+  const form = () => JSON.stringify([textsOfForm(), at("title").value, at("preset").value, location.hash]);
+  told.before = form();
+  told.after = [];
+  for (const link of document.querySelectorAll("nav a")) {
+    scrollTo(0, 0);
+    link.click(); // as the mouse and Enter do
+    await new Promise((done) => setTimeout(done, 200));
+    told.after.push([form(), scrollY > 0]);
+  }
+  location.hash = "#release.x=0.1&release.y=0";
+  await until(() => at("release.x").value === "0.1");
+  told.other = location.hash;
+"""
+
+
+@browser
+def test_a_link_to_a_section_leaves_the_pendulum_and_its_address(page, tmp_path):
+    asked = {"title": "mine", "release.x": "0.3", "release.y": "0.4", "run.t_end": "60"}
+    told = in_browser(page, BEGIN + JUMPS + END, tmp_path, fragment=f"#{urlencode(asked)}")
+    assert "pendulum.length=12.5" in told["before"]
+    assert [form for form, _ in told["after"]] == [told["before"]] * 3
+    assert all(scrolled for _, scrolled in told["after"][1:])
+    assert "release.x=0.1" in told["other"], "an address with a pendulum is taken"
