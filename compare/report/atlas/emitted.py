@@ -45,6 +45,9 @@ def emitted() -> str:
         _series("seriesWithDrag", _with_drag, (*_CONSTANTS, _DRAG)),
         _function("constantsOfGravityAlone", _gravity_alone, _SITE),
         _function("constantsOfEffectiveGravity", _effective, _SITE),
+        _function(
+            "axisDistance", _axis_distance, ("radius", "flattening", "altitude", "sin", "cos")
+        ),
         _function("releaseAtAngles", _released, _RELEASE),
         _function("momentumOf", _momentum, ("nx", "ny", "nz", "vx", "vy", "vz", *_CONSTANTS[:2])),
         _function("tangentialForce", _tangential, ("sin", "cos", *_CONSTANTS)),
@@ -72,6 +75,10 @@ def _gravity_alone(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     length, gravity, rate, radius, flattening, altitude, sin, cos = numbers
     distance = axis_distance(radius, flattening, altitude, sin, cos, functions.sqrt)
     return turn_and_pull(length, gravity, rate, distance, sin, cos)
+
+
+def _axis_distance(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
+    return (axis_distance(*numbers, functions.sqrt),)
 
 
 def _effective(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:

@@ -149,6 +149,7 @@ function solve(scene, words, report = () => {}) {
       at: first.at,
       end,
       bounds: { x: error(end), y: error(end), z: error(end) },
+      axis_m: axisDistanceOf(scene),
       otherGravity: () => (other ??= withOtherGravity(scene)),
       words,
     },

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 
 import numpy as np
@@ -14,6 +15,7 @@ from compare import judge
 from compare.diagnosis.causes import CLOCK
 from compare.report.atlas.form import fields, texts_of
 from reference import load_scene
+from reference.model.constants import constants_in_double
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
 
@@ -136,7 +138,7 @@ def rows_of(scene):
 @pytest.mark.parametrize(
     ("form", "program", "advice"),
     [
-        ("ellipsoid", "effective", "choose effective under Place; else add the force."),
+        ("ellipsoid", "effective", "choose effective under Place; else add −Ω² q sin φ along y"),
         ("effective", "ellipsoid", "choose ellipsoid under Place."),
     ],
 )
@@ -152,6 +154,47 @@ def test_a_g_of_the_other_meaning_has_the_words_of_the_package(form, program, ad
     assert said.startswith(f"Your program {words}: corrected, the error is ")
     assert advice in told
     assert mine["explained"]
+
+
+def stepped(scene, axis_m, step_s=0.01):
+    """Rows of the full equations by steps of Runge and Kutta, as docs/pendulum.c, with this distance from the axis."""
+    length, gravity = float(scene.exact.length), float(scene.exact.gravity)
+    rate, latitude = float(scene.exact.rotation_rate), np.radians(float(scene.exact.latitude))
+    sin, cos = np.sin(latitude), np.cos(latitude)
+    turn, axis = rate * np.array([0, cos, sin]), axis_m * np.array([0, -sin, cos])
+
+    def rates(state):
+        r, v = state
+        force = -2 * np.cross(turn, v) - np.cross(turn, np.cross(turn, r))
+        force += rate**2 * axis - gravity * np.array([0, 0, 1])
+        return np.array([v, force - r * (v @ v + r @ force) / length**2])
+
+    x, y = float(scene.release.x), float(scene.release.y)
+    state = np.array([[x, y, -np.sqrt(length**2 - x**2 - y**2)], [0, 0, 0]])
+    rows = []
+    for count in range(round(float(scene.exact.t_end) / step_s) + 1):
+        rows.append((count * step_s, *state[0]))
+        first = rates(state)
+        second = rates(state + step_s / 2 * first)
+        third = rates(state + step_s / 2 * second)
+        fourth = rates(state + step_s * third)
+        state = state + step_s / 6 * (first + 2 * second + 2 * third + fourth)
+    return csv("t,x,y,z", *np.array(rows[:: round(0.5 / step_s)]).T)
+
+
+def test_the_force_that_the_page_says_to_add_makes_a_program_right():
+    """With g as the effective one the program disagrees; with the force from the page's own number it agrees."""
+    scene = SCENE.with_values(["site.gravity_is=ellipsoid"])
+    (mine,) = answers(scene, [stepped(scene, 0)])
+    said = " ".join(mine["notes"])
+    axis = re.search(r"where q = (\S+) m is the suspension's distance from the Earth's axis", said)[
+        1
+    ]
+    known = constants_in_double(scene.exact)
+    assert float(axis) == pytest.approx(float(known.axis_distance * known.length), rel=1e-9)
+    assert said.count("Add ") + said.count("add ") == 1
+    right, round_earth = answers(scene, [stepped(scene, float(axis)), stepped(scene, 6371000)])
+    assert right["verdict"] == "agrees" and round_earth["verdict"] == "disagrees"
 
 
 def test_the_meaning_of_g_is_likelier_than_a_clock_if_it_explains_as_much():

@@ -164,7 +164,6 @@ WALK = r"""
 """
 
 
-
 @browser
 def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     """From a link to the mistake, on a screen as wide as a phone's; nothing of a stranger's text becomes HTML."""
