@@ -9,6 +9,7 @@ convolution. The momentum form needs no other operations.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -34,6 +35,11 @@ _RELEASE = (
     "azimuthCos",
     "azimuthRate",
 )
+_FORCE = (
+    *("nx", "ny", "nz", "vx", "vy", "vz"),
+    *(*_CONSTANTS, _DRAG),
+    *("turnTurn", "upUp", "northUp", "northNorth"),
+)
 _SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
@@ -50,6 +56,7 @@ def emitted() -> str:
         ),
         _function("releaseAtAngles", _released, _RELEASE),
         _function("momentumOf", _momentum, ("nx", "ny", "nz", "vx", "vy", "vz", *_CONSTANTS[:2])),
+        _function("forceOn", _force, _FORCE),
         _function("tangentialForce", _tangential, ("sin", "cos", *_CONSTANTS)),
     ]
     return "\n".join(
@@ -97,6 +104,14 @@ def _released(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
 def _momentum(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     n, v, turn = numbers[:3], numbers[3:6], numbers[6:]
     return _MOMENTUM.start(tuple(n), tuple(v), Constants(turn=(0, *turn)), functions)[3:]
+
+
+def _force(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
+    """Return the force on a bob, with the terms of the centrifugal force given one by one."""
+    n, v, constants, centrifugal = numbers[:3], numbers[3:6], numbers[6:11], numbers[11:]
+    *turn_and_pull_, drag = constants
+    k = replace(_constants(turn_and_pull_, drag), centrifugal=tuple(centrifugal))
+    return force(tuple(n), tuple(v), k)
 
 
 def _tangential(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:

@@ -26,7 +26,7 @@ function gravityTrial({ names, times, printed, golden, allowed, resolution }, tr
 
   const { said, advice } = MEANINGS_OF_G[other.is];
   return {
-    text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft)}`,
+    text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft, allowed)}`,
     advice: advice.replace("{axis}", shortNumber(truth.axis_m, AXIS_DIGITS)),
     rest: largestLeft,
     isNamed: leavesLittle && isHarmless && need >= RIVAL,
