@@ -196,7 +196,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     assert "adds the centrifugal force to a g that contains it already" in told["gravity"][1]
     assert "choose ellipsoid under Place" in told["gravity"][1]
     assert "Halve your step" not in told["gravity"][1], "nothing is left to explain"
-    assert "a millionth of the amplitude. To loosen this" in told["gravity"][1]
+    assert "the largest distance of the right motion from the vertical" in told["gravity"][1]
     assert told["loose"][0] == "agrees" and "tolerance that you typed" in told["loose"][1]
     assert told["agrees"][0] == "agrees" and "your output agrees" in told["agrees"][1]
     assert told["swapped"][0] == "disagrees"
@@ -241,3 +241,75 @@ def test_a_link_to_a_section_leaves_the_pendulum_and_its_address(page, tmp_path)
     assert [form for form, _ in told["after"]] == [told["before"]] * 3
     assert all(scrolled for _, scrolled in told["after"][1:])
     assert "release.x=0.1" in told["other"], "an address with a pendulum is taken"
+
+
+VISIT = r"""
+  await until(computed);
+  const enter = () => at("tolerance").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+  const outdated = () => at("outdated").textContent;
+  const motion = await player.ready() && rowsNow();
+  const wrong = (size) => motion("t,x,y", (x, y, t) => [x * Math.cos(size * t), y]);
+
+  told.fresh = [outdated(), getComputedStyle(shown).display];
+  hold("pasted", wrong(1e-3));
+  shown.replaceChildren();
+  enter();
+  told.first = await verdict();
+  const [, inFacts] = at("facts").innerText.match(/([0-9.e-]+) m at the end/);
+  const [, inVerdict] = told.first[1].match(/estimated at ([0-9.e-]+) m/);
+  told.estimates = [inFacts, inVerdict];
+  told.largest = () => Number(shown.innerText.match(/largest error\n(\S+) m/)[1]);
+  told.errors = [told.largest()];
+  shown.focus();
+  told.focused = document.activeElement === shown;
+
+  hold("pasted", wrong(5e-4));
+  told.edited = outdated();
+  shown.replaceChildren(); // where g changes, the rows that were judged are judged once more
+  take();
+  told.again = await verdict();
+  told.stillEdited = outdated();
+  told.second = await paste(at("pasted").value);
+  told.errors.push(told.largest());
+  told.judged = outdated();
+  hold("tolerance", "1e3");
+  told.typed = outdated();
+  shown.replaceChildren();
+  enter();
+  told.loose = await verdict();
+  told.decided = outdated();
+  at("pendulum.length").value = "-1";
+  take();
+  told.wrongForm = outdated();
+  delete told.largest;
+"""
+
+
+@browser
+def test_a_verdict_is_compared_with_the_one_before_and_marked_where_it_is_out_of_date(
+    page, tmp_path
+):
+    asked = {"release.x": "0.3", "release.y": "0.4", "run.t_end": "60", "run.grid_step": "1"}
+    told = in_browser(page, BEGIN + VISIT + END, tmp_path, fragment=f"#{urlencode(asked)}")
+    assert told["fresh"] == ["", "none"], "an empty verdict is no stop of the Tab key"
+    assert told["focused"], "a verdict is one"
+    assert told["first"][0] == "disagrees", "Enter in the tolerance judges what the box has"
+    assert "in the verdict before" not in told["first"][1]
+    assert told["estimates"][0] == told["estimates"][1]
+
+    assert "the rows in the box have changed" in told["edited"] == told["stillEdited"]
+    before, after = (f"{error:.3g}" for error in told["errors"])
+    assert float(after) < float(before)
+    line = re.search(
+        r"The largest error is (\S+) m; in the verdict before it was (\S+) m", told["second"][1]
+    )
+    assert [float(word) for word in line.groups()] == [float(after), float(before)]
+    assert told["judged"] == "" and "the tolerance has changed" in told["typed"]
+    assert told["loose"][0] == "agrees" and told["decided"] == ""
+    assert "decimal" not in told["loose"][1] or ", within the tolerance" in told["loose"][1]
+    assert "the pendulum has changed" in told["wrongForm"]
+
+
+def test_the_page_says_which_equations_it_solves(page):
+    words = html.unescape(re.sub("<.*?>", "", page.read_text()))
+    assert "g − 2 Ω × v − Ω × (Ω × (R + r)) − drag v" in words
