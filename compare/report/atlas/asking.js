@@ -21,7 +21,7 @@ const CHANGED = {
 const CONTAINED = {
   sphere: "The bob on a sphere, and not small angles: a wider swing is slower",
   coriolis: "The Coriolis force in three dimensions, −2 Ω × v with Ω = Ω (0, cos φ, sin φ), and not its part with sin φ alone",
-  centrifugal: "The centrifugal force where the bob is: besides its value at the suspension −Ω × (Ω × r), which no measured g contains",
+  centrifugal: "The centrifugal force where the bob is, and not only at the suspension: −Ω × (Ω × r), which no measured g contains",
 };
 const AZIMUTH = Object.fromEntries(COMPASS.map((name) => [name, at(`${name}.meaning`).textContent]));
 

@@ -25,11 +25,10 @@ function marked(value, place) {
 // A bound is given 1.005 times as large, so that rounding to three digits does not take from it.
 const atMost = (bound) => small(1.005 * bound);
 
-function pathRows({ path, verdict, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude }, end, known) {
+function pathRows({ path, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude }, end, known) {
   const { worst } = path;
   const place = firstWrongPlace(worst.difference || bound);
-  const digit = place > 0 ? `decimal ${place}` : "before the point";
-  const within = verdict === "agrees" ? ", within the tolerance" : "";
+  const lastRight = place > 1 ? `decimal ${place - 1}` : "the point at most";
   const rows = [
     ["judged", `${path.rows.toLocaleString("en")} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${end} s`],
     ["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`],
@@ -37,7 +36,7 @@ function pathRows({ path, verdict, tolerance_m: allowed, bound_m: bound, amplitu
     ["error at the end", `${small(path.end_error_m)} m`],
     ["rms error", `${small(path.rms_error_m)} m`],
     ["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(amplitude)} m`],
-    ["first digit that differs", `${digit} of ${worst.component} at t = ${worst.t} s${within}`],
+    ["right up to", `${lastRight} of ${worst.component} at t = ${worst.t} s`],
     ["expected", marked(worst.expected, place)],
     ["got", marked(worst.got, place)],
   ];
