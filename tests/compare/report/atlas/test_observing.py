@@ -165,18 +165,17 @@ def motion_without(scene, term, axis_m=0.0, step_s=0.025):
     length, gravity = float(scene.exact.length), float(scene.exact.gravity)
     rate, latitude = float(scene.exact.rotation_rate), np.radians(float(scene.exact.latitude))
     sin, cos = np.sin(latitude), np.cos(latitude)
-    turn, axis = rate * np.array([0, cos, sin]), axis_m * np.array([0, -sin, cos])
-    coriolis_turn = rate * np.array([0, 0, sin]) if term in ("coriolis", "sphere") else turn
+    turn = rate * np.array([0, 0 if term in ("coriolis", "sphere") else cos, sin])
 
     def rates(state):
         r, v = state
         if term == "sphere":
-            flat = -2 * np.cross(coriolis_turn, v) - gravity / length * r
+            flat = -2 * np.cross(turn, v) - gravity / length * r
             return np.array([v, flat]) * np.array([1, 1, 0])
-        force = -2 * np.cross(coriolis_turn, v)
-        if term != "centrifugal":
-            force -= np.cross(turn, np.cross(turn, r))
-        force += rate**2 * axis - gravity * np.array([0, 0, 1])
+        along_x, along_y, along_z = r * (term != "centrifugal")
+        p = axis_m - along_y * sin + along_z * cos
+        centrifugal = rate**2 * np.array([along_x, -p * sin, p * cos])
+        force = centrifugal - 2 * np.cross(turn, v) - gravity * np.array([0, 0, 1])
         return np.array([v, force - r * (v @ v + r @ force) / length**2])
 
     x, y = float(scene.release.x), float(scene.release.y)

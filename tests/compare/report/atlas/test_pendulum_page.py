@@ -260,6 +260,10 @@ VISIT = r"""
   told.estimates = [inFacts, inVerdict];
   told.largest = () => Number(shown.innerText.match(/largest error\n(\S+) m/)[1]);
   told.errors = [told.largest()];
+  const address = location.hash;
+  shown.querySelector('a[href="#player"]').click();
+  await new Promise((done) => setTimeout(done, 200));
+  told.link = [at("release.x").value, location.hash === address];
   shown.focus();
   told.focused = document.activeElement === shown;
 
@@ -295,6 +299,8 @@ def test_a_verdict_is_compared_with_the_one_before_and_marked_where_it_is_out_of
     assert told["focused"], "a verdict is one"
     assert told["first"][0] == "disagrees", "Enter in the tolerance judges what the box has"
     assert "in the verdict before" not in told["first"][1]
+    assert told["link"] == ["0.3", True], "the verdict leads to the moving picture"
+    assert re.search(r"error at the end\n\S+ m\nrms error\n\S+ m\n", told["first"][1])
     assert told["estimates"][0] == told["estimates"][1]
 
     assert "the rows in the box have changed" in told["edited"] == told["stillEdited"]
@@ -308,6 +314,12 @@ def test_a_verdict_is_compared_with_the_one_before_and_marked_where_it_is_out_of
     assert told["loose"][0] == "agrees" and told["decided"] == ""
     assert "wrong digit" not in told["loose"][1] and "right up to" in told["loose"][1]
     assert "the pendulum has changed" in told["wrongForm"]
+
+
+def test_the_lines_to_print_stand_below_where_rows_are_pasted_and_judged(page):
+    text = page.read_text()
+    order = [text.index(word) for word in ('id="drop"', 'id="verdict"', "How to print t,x,y")]
+    assert order == sorted(order)
 
 
 def test_the_page_says_which_equations_it_solves(page):
