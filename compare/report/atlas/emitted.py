@@ -85,7 +85,8 @@ def _gravity_alone(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
 
 
 def _axis_distance(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
-    return (axis_distance(*numbers, functions.sqrt),)
+    radius, flattening, altitude, sin, cos = numbers
+    return (axis_distance(radius, flattening, altitude, sin, cos, functions.sqrt),)
 
 
 def _effective(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
