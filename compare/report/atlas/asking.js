@@ -262,12 +262,12 @@ function knownBy({ bound_m: bound }) {
 }
 
 // What the equations of the right motion contain, with how far the bob is off without it.
-function containedIn({ leftOut, path }) {
+function containedIn({ leftOut }) {
   const items = [];
   for (const [name, text] of Object.entries(CONTAINED)) {
-    const size = leftOut?.[name];
+    const size = leftOut?.sizes[name];
     if (size === 0) continue;
-    const moved = size === undefined ? "" : ` Without it: off by ${rounded(size, 2)} m up to t = ${path.covered_s[1]} s.`;
+    const moved = size === undefined ? "" : ` Without it: off by ${rounded(size, 2)} m up to t = ${leftOut.until} s.`;
     items.push(made("li", {}, `${text}.${moved}`));
   }
   return ["The right motion contains what programs often leave out:", made("ul", {}, ...items)];

@@ -3,7 +3,7 @@
 "use strict";
 
 const STEPS_A_SWING = 50;
-const MOST_MODEL_STEPS = 300_000; // a day of Paris
+const MOST_SWINGS = 1000; // of a longer run, the first
 
 // The rates of [n, v] by the forces of a model: its constants, and the tension of the cord where the angle counts as small.
 function ratesOf({ turnNorth, turnUp, pull, drag, centrifugal, tension }) {
@@ -26,13 +26,15 @@ function stepBy(rates, state, step) {
   return state.map((value, i) => value + (step / 6) * (first[i] + 2 * second[i] + 2 * third[i] + fourth[i]));
 }
 
-// The largest distance in m, seen from above, of each model from the full equations up to a time in s, by its name; null if
-// the swing is wide, or the run is long.
-function leftOut(scene, wide, until) {
+// The largest distance in m, seen from above, of each model from the full equations, by its name: {until in s, sizes}; null
+// if the swing is wide.
+function leftOut(scene, wide, lastTime) {
   const { length, unit, swing, start, velocity, constants } = problemOf(scene);
+  if (wide || !swing) return null;
+  const swings = Math.min(MOST_SWINGS, (swing * lastTime) / (2 * Math.PI));
+  const until = swings < MOST_SWINGS ? lastTime : Number(((2 * Math.PI * swings) / swing).toPrecision(3));
+  const count = Math.ceil(STEPS_A_SWING * swings);
   const end = until / unit;
-  const count = Math.ceil((STEPS_A_SWING * swing * until) / (2 * Math.PI));
-  if (wide || !(count > 0 && count <= MOST_MODEL_STEPS)) return null;
 
   const [turnNorth, turnUp, pullNorth, pullUp, drag = 0] = constants;
   const centrifugal = [turnNorth ** 2 + turnUp ** 2, turnUp ** 2, -turnNorth * turnUp, turnNorth ** 2];
@@ -52,5 +54,6 @@ function leftOut(scene, wide, until) {
       run.farthest = Math.max(run.farthest, Math.hypot(run.state[0] - state[0], run.state[1] - state[1]));
     }
   }
-  return Object.fromEntries(Object.keys(models).map((name, i) => [name, length * runs[i].farthest]));
+  const sizes = Object.fromEntries(Object.keys(models).map((name, i) => [name, length * runs[i].farthest]));
+  return { until, sizes };
 }

@@ -218,11 +218,11 @@ def test_how_far_the_bob_is_off_without_a_term():
     full = motion_without(SCENE, "")
     wrong = csv("t,x,y", *motion_without(SCENE.with_values(["pendulum.length=20.5"]), "").T[:3])
     mine, right = answers(SCENE, [wrong, csv("t,x,y,z", *full.T)])
-    assert mine["leftOut"].keys() == {"sphere", "coriolis", "centrifugal"}
-    for term, size_m in mine["leftOut"].items():
+    assert mine["leftOut"]["sizes"].keys() == {"sphere", "coriolis", "centrifugal"}
+    for term, size_m in mine["leftOut"]["sizes"].items():
         apart = (motion_without(SCENE, term) - full)[:, 1:3]
         assert size_m == pytest.approx(np.hypot(*apart.T).max(), rel=0.05), term
-    assert right["leftOut"] is None
+    assert mine["leftOut"]["until"] == 120 and right["leftOut"] is None
     wide = SCENE.with_values(["release.x=16"])
     (mine,) = answers(wide, [wrong])
     assert mine["verdict"] == "disagrees" and mine["leftOut"] is None
