@@ -45,6 +45,7 @@ from places import ROOT
 import compare
 import reference
 from compare.diagnosis import conventions
+from compare.diagnosis.advice import DO
 from foucault import commands as commands_of_foucault
 from reference.scenes.scene import Scene
 
@@ -206,6 +207,17 @@ def test_the_table_of_causes_is_that_of_the_code():
     told = {word for words in causes_page.HABITS for word in words.split(", ")}
     # those are made of parts
     assert words | {"z_down", "z_from_lowest", "rows_late", "rows_early"} == told
+
+
+def test_what_an_advice_says_to_add_is_made_of_numbers_that_are_printed(foucault):
+    for word in ("no_centrifugal", "effective_gravity", "no_tilt", "no_lift"):
+        assert (
+            "q is the suspension's distance from the Earth's axis (`foucault show` prints it)"
+            in DO[word]
+        )
+    assert not [word for word, text in DO.items() if re.search(r"\bR\b", text)], "R is not printed"
+    status, out, _ = foucault("show", "paris")
+    assert status == 0 and re.search(r"Earth's axis +4205335\.7\d+ m away", out)
 
 
 def test_the_page_on_scenes_has_every_field_with_its_default_unit_and_meaning():

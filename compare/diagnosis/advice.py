@@ -8,12 +8,16 @@ from __future__ import annotations
 import re
 
 FAMILIES = ("gravity_", "integrator_", "frame_")  # of whose words one line speaks
+# the centrifugal force at the suspension is Ω² q, away from the axis
+_AXIS = "q is the suspension's distance from the Earth's axis (`foucault show` prints it)"
 DO = {
-    "no_centrifugal": "Add −Ω × (Ω × (R + r)). If your g is a measured one, add −Ω × (Ω × r) alone, "
-    "and say `--set site.gravity_is=effective`.",
-    "effective_gravity": "If your g is the measured one, say `--set site.gravity_is=effective`; else add the force.",
-    "no_tilt": "Add the force's part along y: −Ω² R cos φ sin φ.",
-    "no_lift": "Add the force's part along z: Ω² R cos² φ.",
+    "no_centrifugal": "Add Ω² x along x, −Ω² p sin φ along y and Ω² p cos φ along z, where "
+    f"p = q − y sin φ + z cos φ, and {_AXIS}. If your g is a measured one, take q = 0, and say "
+    "`--set site.gravity_is=effective`.",
+    "effective_gravity": "If your g is the measured one, say `--set site.gravity_is=effective`; else add "
+    f"−Ω² q sin φ along y and Ω² q cos φ along z, where {_AXIS}.",
+    "no_tilt": f"Add −Ω² q sin φ along y, where {_AXIS}.",
+    "no_lift": f"Add Ω² q cos φ along z, where {_AXIS}.",
     "tilt_no_sine": "Multiply the part along y by sin φ.",
     "uniform_gravity": "Compute the force where the bob is and not at the suspension. The effect is small.",
     "ellipsoid_gravity": "Leave the force at the suspension out: a measured g has it. Keep its change along the swing.",

@@ -13,13 +13,26 @@ const BEARING = {
 };
 const COMPASS = Object.keys(BEARING);
 const EMPTY = "The box is empty. Paste what your program printed: a line t,x,y, and below it the time in s and the place in m, row by row.";
+const CHANGED = {
+  rows: "the rows in the box have changed. Press “Judge the rows”.",
+  tolerance: "the tolerance has changed. Press Enter in its field.",
+  pendulum: "the pendulum has changed.",
+};
+const CONTAINED = {
+  sphere: "The bob on a sphere, and not small angles: a wider swing is slower",
+  coriolis: "The Coriolis force in three dimensions, −2 Ω × v with Ω = Ω (0, cos φ, sin φ), and not its part with sin φ alone",
+  centrifugal: "The centrifugal force where the bob is, and not only at the suspension: −Ω × (Ω × r), which no measured g contains",
+};
 const AZIMUTH = Object.fromEntries(COMPASS.map((name) => [name, at(`${name}.meaning`).textContent]));
 
 let pendulum = null; // { title, texts } that the form has, without a mistake
+let address = ""; // the fragment that is this pendulum, or that the page was opened with
 let motion = null; // { worker, facts } of the pendulum that is shown
 let started = 0; // motions so far: of two the later one is shown
 let timer = null;
 let files = []; // that were judged last
+const changes = new Set(); // since then: names of CHANGED
+const largestError = { last: null, before: null }; // in m: of the last verdict, and of the last one with another error
 
 // The form.
 
@@ -167,14 +180,15 @@ function showMotion(played, number) {
 // Take what the form says: show its mistakes, or its motion.
 function take() {
   const texts = textsOfForm();
+  mark("pendulum");
   showKind();
   if (showWrong(texts)) {
     say("A field is wrong: see below it.");
     return;
   }
   pendulum = { title: plainTitle(at("title").value), texts };
-  const fragment = fragmentOf(pendulum.title, texts, fields);
-  if (location.hash.slice(1) !== fragment) history.replaceState(null, "", `#${fragment}`);
+  address = `#${fragmentOf(pendulum.title, texts, fields)}`;
+  if (location.hash !== address) history.replaceState(null, "", address);
   at("toml").textContent = tomlOf(pendulum.title, texts, fields);
   at("step").placeholder = String(sceneOf(texts, fields).run.grid_step);
   solvePendulum();
@@ -193,7 +207,14 @@ function takePreset(id) {
   take();
 }
 
+// Take a new address: another pendulum, or a section of this page, which leaves form and address as they are.
+function takeAddressChange() {
+  if (location.hash && at(location.hash.slice(1))) history.replaceState(null, "", address);
+  else takeAddress();
+}
+
 function takeAddress() {
+  address = location.hash;
   const { title, texts } = textsOfFragment(location.hash, fields);
   if (!Object.keys(texts).length) {
     at("preset").value = BEGIN;
@@ -210,8 +231,46 @@ function takeAddress() {
 
 const shown = at("verdict");
 
+// Mark the verdict as out of date by a change, and as up to date again.
+function mark(change) {
+  if (files.length) changes.add(change);
+  showOutdated();
+}
+
+function unmark(...names) {
+  for (const change of names) changes.delete(change);
+  showOutdated();
+}
+
+function showOutdated() {
+  const [change] = changes;
+  at("outdated").textContent = change ? `Out of date: ${CHANGED[change]}` : "";
+}
+
+// The largest error beside that of the verdict before, where it is another one.
+function comparedWithBefore({ path }) {
+  if (!path) return [];
+  const error = path.max_error_m;
+  if (error !== largestError.last) largestError.before = largestError.last;
+  largestError.last = error;
+  if (largestError.before === null) return [];
+  return [`The largest error is ${small(error)} m; in the verdict before it was ${small(largestError.before)} m.`];
+}
+
 function knownBy({ bound_m: bound }) {
   return `the motion above, whose error is estimated at ${small(bound)} m`;
+}
+
+// What the equations of the right motion contain, with how far the bob is off without it.
+function containedIn({ leftOut }) {
+  const items = [];
+  for (const [name, text] of Object.entries(CONTAINED)) {
+    const size = leftOut?.sizes[name];
+    if (size === 0) continue;
+    const moved = size === undefined ? "" : ` Without it: off by ${rounded(size, 2)} m up to t = ${leftOut.until} s.`;
+    items.push(made("li", {}, `${text}.${moved}`));
+  }
+  return ["The right motion contains what programs often leave out:", made("ul", {}, ...items)];
 }
 
 // What to do about an error that the page does not explain, or not in full.
@@ -221,14 +280,15 @@ function furtherSteps(result) {
   const { gravity } = result;
   const steps = [];
   if (gravity && !gravity.helps) {
-    steps.push("The page finds nothing wrong with the clock, the unit, the axes and the meaning of g. Other equations, the method and the step are not tried here.");
+    steps.push("The page finds nothing wrong with the clock, the unit, the axes and the meaning of g. What remains are your equations, your numbers, your method and its step.");
   } else if (!gravity?.isNamed) {
-    steps.push("The page finds nothing wrong with the clock, the unit and the axes. The equations, the method and the step are not tried here.");
+    steps.push("The page finds nothing wrong with the clock, the unit and the axes. What remains are your equations, your numbers, your method and its step.");
   }
   steps.push("Halve your step and judge again: what shrinks is the error of your method, what stays is in your equations.");
   if (gravity?.helps && !gravity.isNamed && site.gravity_is === "ellipsoid") {
     steps.push("Does your program leave out the centrifugal force? Choose effective under Place: if most of the error goes, that is it.");
   }
+  if (result.path) steps.push(containedIn(result));
   const command = "foucault score pendulum.toml mine.csv";
   return [...steps, `Or save pendulum.toml below: ${command} names the mistake. The command needs Python.`];
 }
@@ -240,22 +300,38 @@ async function judgeFiles(chosen) {
   const { worker } = motion;
   shown.className = "working";
   shown.replaceChildren(made("p", { className: "word" }, "Judging …"));
+  unmark("tolerance", "pendulum");
   const result = await worker.ask("judge", { files, tolerance: at("tolerance").value });
   if (worker !== motion.worker) return;
   const { run } = sceneOf(pendulum.texts, fields);
   const scene = { name: pendulum.title || "this pendulum", end: run.t_end, known: knownBy, bound: "estimated error of the page" };
-  showVerdict(shown, files, result, scene, furtherSteps(result));
+  const notes = result.refused ? [] : [...comparedWithBefore(result), ...result.notes];
+  showVerdict(shown, files, { ...result, notes }, scene, furtherSteps(result));
   if (result.mine) player.drop(result.mine, result.path.max_error_m);
 }
 
 function judgePasted() {
   const text = at("pasted").value;
   if (text.trim()) {
+    unmark("rows");
     judgeFiles([new File([text], "your output")]);
     return;
   }
   files = [];
+  unmark(...changes);
   showRefusal(shown, EMPTY);
+}
+
+function judgeDropped(chosen) {
+  unmark("rows");
+  judgeFiles(chosen);
+}
+
+// Enter in the field of the tolerance: judge what the box has, if that has not been judged.
+function judgeByEnter(event) {
+  if (event.key !== "Enter") return;
+  if (changes.has("rows") || !files.length) judgePasted();
+  else judgeFiles(files);
 }
 
 // What can be kept.
@@ -299,11 +375,14 @@ form.addEventListener("input", ({ target }) => {
 });
 at("preset").addEventListener("change", (event) => takePreset(event.target.value));
 at("tolerance").addEventListener("change", () => judgeFiles(files));
+at("tolerance").addEventListener("input", () => mark("tolerance"));
+at("tolerance").addEventListener("keydown", judgeByEnter);
+at("pasted").addEventListener("input", () => mark("rows"));
 at("judge").addEventListener("click", judgePasted);
 at("csv").addEventListener("click", saveRows);
 at("copy").addEventListener("click", copyLink);
 at("save").addEventListener("click", () => save("pendulum.toml", at("toml").textContent, "application/toml"));
 at("direction").addEventListener("change", turnDirections);
-addEventListener("hashchange", takeAddress);
-takeFiles(at("drop"), judgeFiles);
+addEventListener("hashchange", takeAddressChange);
+takeFiles(at("drop"), judgeDropped);
 takeAddress();

@@ -9,6 +9,7 @@ convolution. The momentum form needs no other operations.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -34,6 +35,11 @@ _RELEASE = (
     "azimuthCos",
     "azimuthRate",
 )
+_FORCE = (
+    *("nx", "ny", "nz", "vx", "vy", "vz"),
+    *(*_CONSTANTS, _DRAG),
+    *("turnTurn", "upUp", "northUp", "northNorth"),
+)
 _SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
@@ -45,8 +51,12 @@ def emitted() -> str:
         _series("seriesWithDrag", _with_drag, (*_CONSTANTS, _DRAG)),
         _function("constantsOfGravityAlone", _gravity_alone, _SITE),
         _function("constantsOfEffectiveGravity", _effective, _SITE),
+        _function(
+            "axisDistance", _axis_distance, ("radius", "flattening", "altitude", "sin", "cos")
+        ),
         _function("releaseAtAngles", _released, _RELEASE),
         _function("momentumOf", _momentum, ("nx", "ny", "nz", "vx", "vy", "vz", *_CONSTANTS[:2])),
+        _function("forceOn", _force, _FORCE),
         _function("tangentialForce", _tangential, ("sin", "cos", *_CONSTANTS)),
     ]
     return "\n".join(
@@ -74,6 +84,11 @@ def _gravity_alone(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     return turn_and_pull(length, gravity, rate, distance, sin, cos)
 
 
+def _axis_distance(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
+    radius, flattening, altitude, sin, cos = numbers
+    return (axis_distance(radius, flattening, altitude, sin, cos, functions.sqrt),)
+
+
 def _effective(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     length, gravity, rate, _, _, _, sin, cos = numbers
     # the constants of the model have R = 0 here
@@ -90,6 +105,14 @@ def _released(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
 def _momentum(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     n, v, turn = numbers[:3], numbers[3:6], numbers[6:]
     return _MOMENTUM.start(tuple(n), tuple(v), Constants(turn=(0, *turn)), functions)[3:]
+
+
+def _force(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
+    """Return the force on a bob, with the terms of the centrifugal force given one by one."""
+    n, v, constants, centrifugal = numbers[:3], numbers[3:6], numbers[6:11], numbers[11:]
+    *turn_and_pull_, drag = constants
+    k = replace(_constants(turn_and_pull_, drag), centrifugal=tuple(centrifugal))
+    return force(tuple(n), tuple(v), k)
 
 
 def _tangential(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:

@@ -20,7 +20,7 @@ _PLACE = LEGENDS["site"]
 # what is said of a program whose g has a meaning that the form does not say, and what to do about it
 _SAID_OF_G = {"effective": EFFECTIVE, "ellipsoid": ADDED_TWICE}
 _ADVICE_ON_G = {
-    "effective": [advice_on("effective_gravity"), advice_on("no_tilt"), advice_on("no_lift")],
+    "effective": [advice_on("effective_gravity")],
     "ellipsoid": [
         advice_on("ellipsoid_gravity"),
         f"If your g is gravity alone, choose ellipsoid under {_PLACE}.",
@@ -58,5 +58,6 @@ def _meanings_of_g() -> dict[str, dict[str, str]]:
 
 
 def _on_the_page(sentence: str) -> str:
-    """Return an advice with the choice of the form in place of a command's option."""
-    return re.sub(r"say `--set site\.gravity_is=(\w+)`", rf"choose \1 under {_PLACE}", sentence)
+    """Return an advice with the choice of the form, and a number, in place of a command's option and answer."""
+    chosen = re.sub(r"say `--set site\.gravity_is=(\w+)`", rf"choose \1 under {_PLACE}", sentence)
+    return re.sub(r"q is (.*?) \(`foucault show` prints it\)", r"q = {axis} m is \1", chosen)

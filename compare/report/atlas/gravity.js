@@ -1,6 +1,9 @@
 // The other meaning of g: what it leaves of a file, by the tests of compare/diagnosis/claims.py. `truth.otherGravity`
-// returns {is, at}, that meaning and the motion with it. Needs observing.js and claims.js.
+// returns {is, at}, that meaning and the motion with it; `truth.axis_m` is the suspension's distance from the Earth's axis.
+// Needs observing.js and claims.js.
 "use strict";
+
+const AXIS_DIGITS = 10; // of the distance from the Earth's axis: a millimetre
 
 const distancesOf = (columns) => columns[0].map((_, row) => Math.hypot(...columns.map((values) => values[row])));
 
@@ -23,8 +26,8 @@ function gravityTrial({ names, times, printed, golden, allowed, resolution }, tr
 
   const { said, advice } = MEANINGS_OF_G[other.is];
   return {
-    text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft)}`,
-    advice,
+    text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft, allowed)}`,
+    advice: advice.replace("{axis}", shortNumber(truth.axis_m, AXIS_DIGITS)),
     rest: largestLeft,
     isNamed: leavesLittle && isHarmless && need >= RIVAL,
     explains,

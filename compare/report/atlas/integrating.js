@@ -40,6 +40,12 @@ function constantsOf({ pendulum, site }) {
   return constants(pendulum.length, gravity, rate, radius, flattening, altitude, sin, cos);
 }
 
+// The distance of the suspension from the Earth's axis, in m.
+function axisDistanceOf({ site }) {
+  const [distance] = axisDistance(site.equatorial_radius, 1 / site.inverse_flattening, site.altitude, ...circle(site.latitude));
+  return distance;
+}
+
 // Position in m and velocity in m/s at t = 0: [x, y, z, vx, vy, vz].
 function releaseOf({ pendulum, release }) {
   const { length } = pendulum;

@@ -106,15 +106,18 @@ function errorsOf(columns, { rows, golden }) {
   return { components, position, t: Float64Array.from(rows, (row) => columns.t[row]) };
 }
 
-// The end of a sentence on a mistake: the error that is left without it.
-const correctedTo = (rest) => `corrected, the error is ${rest.toPrecision(2)} m.`;
+// The end of a sentence on a mistake: the error that is left without it, in tolerances too if it is more than one.
+function correctedTo(rest, allowed) {
+  const beyond = rest > allowed ? `, ${shortNumber(rest / allowed, 2)} tolerances: something else is wrong too` : "";
+  return `corrected, the error is ${rest.toPrecision(2)} m${beyond}.`;
+}
 
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
 const reach = (xs, ys) => xs.reduce((best, x, i) => Math.max(best, Math.hypot(x, ys[i])), 0);
 
 // How far the truth of a file's position columns may be off, in m.
-function boundOf(columns, { at, bounds, bound_m: bound }) {
-  if (!at) return bound;
+function boundOf(columns, { bounds, bound_m: bound }) {
+  if (!bounds) return bound;
   return Math.hypot(...POSITION.filter((name) => !columns || name in columns).map((name) => Number(bounds[name])));
 }
 
@@ -198,9 +201,9 @@ function toleranceOf(tolerance, swingsLess) {
 // What explains the error, the plainest first: {notes, explained, gravity}, with what was found of the other meaning of g
 // if it was tried.
 function mistakesIn(columns, judged, errors, truth, allowed) {
-  const plain = suspicions(columns, judged, errors, truth);
+  const plain = suspicions(columns, judged, errors, truth, allowed);
   if (plain.length) return { notes: plain, explained: true };
-  const unit = unitOfTime(columns, truth);
+  const unit = unitOfTime(columns, truth, allowed);
   return unit.length ? { notes: unit, explained: true } : observed(columns, judged, truth, allowed);
 }
 
@@ -231,10 +234,10 @@ function firstWrongPlace(error) {
 }
 
 // What plain mistakes explain, and what they leave: another unit, axes turned round or exchanged, a clock that is late.
-function suspicions(columns, { rows, golden }, errors, truth) {
+function suspicions(columns, { rows, golden }, errors, truth, allowed) {
   const { words } = truth;
   const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
-  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(rest)}`] : []);
+  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(rest, allowed)}`] : []);
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
       if (!unit && !axes) continue;
@@ -255,7 +258,7 @@ function suspicions(columns, { rows, golden }, errors, truth) {
 }
 
 // The unit in which times are meant: the rows, their times in it, are within 2 % of the truth; a sentence or none.
-function unitOfTime(columns, truth) {
+function unitOfTime(columns, truth, allowed = Infinity) {
   const { words, amplitude_m: amplitude } = truth;
   const each = Math.ceil(columns.t.length / SAMPLE);
   for (const [unit, text] of Object.entries(words.TIMES_SAID)) {
@@ -269,7 +272,7 @@ function unitOfTime(columns, truth) {
     const all = [...columns.t.keys()];
     if (each > 1 && truth.at && left(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
     const rest = left(all);
-    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(rest)}`];
+    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(rest, allowed)}`];
   }
   return [];
 }

@@ -58,7 +58,7 @@ def _lead_of_scenes(scenes: Sequence[Entry]) -> Html:
     """Return the introduction of the page over all scenes."""
     datasets = sum(len(entry.datasets) for entry in scenes)
     about = paragraph(
-        f"{counted(len(scenes), 'scene')} and {datasets} golden datasets. The page of a scene "
+        f"{counted(len(scenes), 'scene')} and {counted(datasets, 'golden dataset')}. The page of a scene "
         "says what it catches and the evidence for its numbers, judges your program's output in the browser, and "
         "plays the motion."
     )

@@ -39,6 +39,7 @@ _SOLVING = (
     "answering.js",
     EMITTED,
     "integrating.js",
+    "leaving.js",
     "swinging.js",
     "solving.js",
     "describing.js",

@@ -28,13 +28,15 @@ const atMost = (bound) => small(1.005 * bound);
 function pathRows({ path, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude }, end, known) {
   const { worst } = path;
   const place = firstWrongPlace(worst.difference || bound);
+  const lastRight = place > 1 ? `decimal ${place - 1}` : "the point at most";
   const rows = [
     ["judged", `${path.rows.toLocaleString("en")} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${end} s`],
     ["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`],
     ["held against", known],
-    ["rms, at the end", `${small(path.rms_error_m)} m, ${small(path.end_error_m)} m`],
+    ["error at the end", `${small(path.end_error_m)} m`],
+    ["rms error", `${small(path.rms_error_m)} m`],
     ["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(amplitude)} m`],
-    ["first wrong digit", `${place > 0 ? `decimal ${place}` : "before the point"} of ${worst.component} at t = ${worst.t} s`],
+    ["right up to", `${lastRight} of ${worst.component} at t = ${worst.t} s`],
     ["expected", marked(worst.expected, place)],
     ["got", marked(worst.got, place)],
   ];
@@ -60,10 +62,10 @@ function pictureMade(svg) {
 }
 
 // What decided a verdict, and how to change it.
-const LOOSEN = "To loosen this, type metres into Tolerance above.";
+const LOOSEN = "To loosen this, type metres into Tolerance above and press Enter.";
 const DECIDES = {
   typed: "the tolerance that you typed above.",
-  amplitude: `a millionth of the amplitude. ${LOOSEN}`,
+  amplitude: `a millionth of the amplitude, which is the largest distance of the right motion from the vertical through the suspension. ${LOOSEN}`,
   rows: `a millionth of the amplitude of your rows, which swing far less than this. ${LOOSEN}`,
 };
 
@@ -76,7 +78,7 @@ function showRefusal(shown, reason) {
 }
 
 // Show a verdict on files in an element. `scene` has its name and end, `known` says by what was judged, and
-// `bound` what its error is called; `notes` follow those of the verdict.
+// `bound` what its error is called; `notes` follow those of the verdict, each a text or several children.
 function showVerdict(shown, files, result, { name, end, known, bound }, notes = []) {
   if (result.refused) {
     showRefusal(shown, result.refused);
@@ -84,7 +86,7 @@ function showVerdict(shown, files, result, { name, end, known, bound }, notes = 
   }
   const rows = result.path ? pathRows(result, end, known(result)) : [];
   if (result.transits) rows.push(...transitRows(result.transits));
-  const items = [...result.notes, ...notes].map((note) => made("li", {}, note));
+  const items = [...result.notes, ...notes].map((note) => made("li", {}, ...[note].flat()));
   const names = files.map((file) => file.name).join(" and ");
   const word = made("p", { className: "word" }, made("strong", {}, `${names} ${result.verdict}`), ` with ${name}`);
   shown.className = result.verdict;
@@ -92,8 +94,9 @@ function showVerdict(shown, files, result, { name, end, known, bound }, notes = 
   shown.replaceChildren(word, decided, made("ul", {}, ...items), factsMade(rows));
   if (!result.points) return;
   const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
-  const help = `How far your bob is from the right one, in m. Below the line “tolerance” it agrees; below “${bound}” nothing can be told.`;
-  shown.append(made("p", { className: "faint" }, help), pictureMade(errorPicture(result, wide, bound)));
+  const moving = ["In ", made("a", { href: "#player" }, "the moving picture"), " your bob is the orange one, with its error enlarged as the line below it says."];
+  const help = `How far your bob is from the right one, in m. Below the line “tolerance” it agrees; below “${bound}” nothing can be told. `;
+  shown.append(made("p", { className: "faint" }, help, ...moving), pictureMade(errorPicture(result, wide, bound)));
 }
 
 // Take the files that are dropped on a zone or chosen.

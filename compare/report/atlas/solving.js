@@ -1,5 +1,6 @@
 // Solve a pendulum twice and make of it what judging.js takes for the truth; the difference of the runs estimates the
-// error. Needs integrating.js, swinging.js, answering.js and claims.js. Pure functions, without the page.
+// error. Needs integrating.js, leaving.js, swinging.js, answering.js and
+// claims.js. Pure functions, without the page.
 "use strict";
 
 const FIRST = { order: 20, truncation: 2 ** -50, moved: 0 };
@@ -148,7 +149,8 @@ function solve(scene, words, report = () => {}) {
       possible: [],
       at: first.at,
       end,
-      bounds: { x: error(end), y: error(end), z: error(end) },
+      bound_m: error(end),
+      axis_m: axisDistanceOf(scene),
       otherGravity: () => (other ??= withOtherGravity(scene)),
       words,
     },
@@ -163,10 +165,14 @@ function csvOf({ at, scene }, step) {
   return `${names.join(",")}\n${lines.join("\n")}\n`;
 }
 
-// The verdict on files by a motion. One that is not known more closely than the tolerance judges nothing.
-function answerBy({ truth, facts }, files, tolerance) {
+// The verdict on files by a motion, and what terms of the equations matter where an error is left to explain. One that is not known more closely than the tolerance judges nothing.
+function answerBy({ scene, truth, facts }, files, tolerance) {
   const result = answer(files, tolerance, truth);
-  if (result.refused || result.tolerance_m >= facts.error) return result;
+  if (result.refused) return result;
+  if (result.tolerance_m >= facts.error) {
+    const isOpen = result.path && result.verdict === "disagrees" && !result.explained;
+    return { ...result, leftOut: isOpen ? leftOut(scene, facts.wide, result.path.covered_s[1]) : null };
+  }
   const known = `${facts.error.toPrecision(3)} m`;
   const allowed = `${result.tolerance_m.toPrecision(3)} m`;
   const reason = `This page knows the motion to ${known} only, and the tolerance is ${allowed}.`;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 
 import numpy as np
@@ -14,6 +15,7 @@ from compare import judge
 from compare.diagnosis.causes import CLOCK
 from compare.report.atlas.form import fields, texts_of
 from reference import load_scene
+from reference.model.constants import constants_in_double
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
 
@@ -136,7 +138,7 @@ def rows_of(scene):
 @pytest.mark.parametrize(
     ("form", "program", "advice"),
     [
-        ("ellipsoid", "effective", "choose effective under Place; else add the force."),
+        ("ellipsoid", "effective", "choose effective under Place; else add −Ω² q sin φ along y"),
         ("effective", "ellipsoid", "choose ellipsoid under Place."),
     ],
 )
@@ -152,6 +154,78 @@ def test_a_g_of_the_other_meaning_has_the_words_of_the_package(form, program, ad
     assert said.startswith(f"Your program {words}: corrected, the error is ")
     assert advice in told
     assert mine["explained"]
+
+
+def motion_without(scene, term, axis_m=0.0, step_s=0.025):
+    """Rows t, x, y, z by steps of Runge and Kutta, as docs/pendulum.c, each half second.
+
+    `term` is left out: sphere (for small angles), coriolis (its horizontal Ω), centrifugal (its change along the
+    swing), or nothing.
+    """
+    length, gravity = float(scene.exact.length), float(scene.exact.gravity)
+    rate, latitude = float(scene.exact.rotation_rate), np.radians(float(scene.exact.latitude))
+    sin, cos = np.sin(latitude), np.cos(latitude)
+    turn = rate * np.array([0, 0 if term in ("coriolis", "sphere") else cos, sin])
+
+    def rates(state):
+        r, v = state
+        if term == "sphere":
+            flat = -2 * np.cross(turn, v) - gravity / length * r
+            return np.array([v, flat]) * np.array([1, 1, 0])
+        along_x, along_y, along_z = r * (term != "centrifugal")
+        p = axis_m - along_y * sin + along_z * cos
+        centrifugal = rate**2 * np.array([along_x, -p * sin, p * cos])
+        force = centrifugal - 2 * np.cross(turn, v) - gravity * np.array([0, 0, 1])
+        return np.array([v, force - r * (v @ v + r @ force) / length**2])
+
+    x, y = float(scene.release.x), float(scene.release.y)
+    state = np.array([[x, y, -np.sqrt(length**2 - x**2 - y**2)], [0, 0, 0]])
+    rows = []
+    for count in range(round(float(scene.exact.t_end) / step_s) + 1):
+        rows.append((count * step_s, *state[0]))
+        first = rates(state)
+        second = rates(state + step_s / 2 * first)
+        third = rates(state + step_s / 2 * second)
+        fourth = rates(state + step_s * third)
+        state = state + step_s / 6 * (first + 2 * second + 2 * third + fourth)
+    return np.array(rows[:: round(0.5 / step_s)])
+
+
+def with_force(scene, axis_m):
+    """Rows of a right program that takes this distance from the Earth's axis."""
+    return csv("t,x,y,z", *motion_without(scene, "", axis_m).T)
+
+
+def test_the_force_that_the_page_says_to_add_makes_a_program_right():
+    """With g as the effective one the program disagrees; with the force from the page's own number it agrees."""
+    scene = SCENE.with_values(["site.gravity_is=ellipsoid"])
+    (mine,) = answers(scene, [with_force(scene, 0)])
+    said = " ".join(mine["notes"])
+    axis = re.search(r"where q = (\S+) m is the suspension's distance from the Earth's axis", said)[
+        1
+    ]
+    known = constants_in_double(scene.exact)
+    assert float(axis) == pytest.approx(float(known.axis_distance * known.length), rel=1e-9)
+    assert said.count("Add ") + said.count("add ") == 1
+    right, round_earth = answers(
+        scene, [with_force(scene, float(axis)), with_force(scene, 6371000)]
+    )
+    assert right["verdict"] == "agrees" and round_earth["verdict"] == "disagrees"
+
+
+def test_how_far_the_bob_is_off_without_a_term():
+    """As another integrator has it. Nothing is said of a wide swing, and where nothing is left to explain."""
+    full = motion_without(SCENE, "")
+    wrong = csv("t,x,y", *motion_without(SCENE.with_values(["pendulum.length=20.5"]), "").T[:3])
+    mine, right = answers(SCENE, [wrong, csv("t,x,y,z", *full.T)])
+    assert mine["leftOut"]["sizes"].keys() == {"sphere", "coriolis", "centrifugal"}
+    for term, size_m in mine["leftOut"]["sizes"].items():
+        apart = (motion_without(SCENE, term) - full)[:, 1:3]
+        assert size_m == pytest.approx(np.hypot(*apart.T).max(), rel=0.05), term
+    assert mine["leftOut"]["until"] == 120 and right["leftOut"] is None
+    wide = SCENE.with_values(["release.x=16"])
+    (mine,) = answers(wide, [wrong])
+    assert mine["verdict"] == "disagrees" and mine["leftOut"] is None
 
 
 def test_the_meaning_of_g_is_likelier_than_a_clock_if_it_explains_as_much():
@@ -194,4 +268,9 @@ def test_beside_a_step_error_the_meaning_of_g_is_named_if_it_makes_most_of_the_e
     fine, coarse = answers(scene, [by_steps(0.01), by_steps(0.1)])
     assert "takes g as the effective gravity" in fine["notes"][0] and not fine["explained"]
     assert fine["gravity"]["isNamed"] and not fine["gravity"]["explains"]
+    left = re.fullmatch(
+        r"Your .*, the error is (\S+) m, (\S+) tolerances: something else .*", fine["notes"][0]
+    )
+    error_m, tolerances = map(float, left.groups())
+    assert tolerances == pytest.approx(error_m / fine["tolerance_m"], rel=0.1)
     assert coarse["notes"] == [] and coarse["gravity"]["helps"] and not coarse["explained"]

@@ -165,6 +165,7 @@ def test_a_dataset_of_hostile_words_has_a_page(foucault, tmp_path):
     status, _, err = foucault("atlas", "--data", tmp_path / "data", "--out", tmp_path / "out")
     assert (status, err) == (0, "")
     assert all(evil not in path.read_text() for path in (tmp_path / "out").iterdir())
+    assert "1 scene and 1 golden dataset. " in (tmp_path / "out" / "scenes.html").read_text()
 
 
 def test_the_command_to_score_says_what_differs_from_the_scene(readings):

@@ -63,7 +63,8 @@ def test_the_page_has_the_lines_of_the_documentation(page):
     assert command.startswith("$ foucault score")
 
 
-WALK = r"""
+# what a visitor does is between these two
+BEGIN = r"""
 <script>
 (async () => {
   const told = {};
@@ -88,7 +89,31 @@ WALK = r"""
     at("judge").click();
     return verdict();
   };
+  const hold = (id, text) => { // type, and stay in the field
+    at(id).value = text;
+    at(id).dispatchEvent(new Event("input", { bubbles: true }));
+  };
+"""
+END = r"""
+  const all = { ...told, hacked: typeof hacked, violations };
+  document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
+})();
 
+// Rows of the motion that is shown, or of a changed one, through a function of x, y and t.
+function rowsNow(changes = {}) {
+  const texts = { ...textsOfForm(), ...changes };
+  const at_ = motionOf(integrate(problemOf(sceneOf(texts, fields)), 20, 2 ** -50));
+  return (header, map) => {
+    const lines = Array.from({ length: 121 }, (_, i) => {
+      const [x, y] = at_(i / 2);
+      return [i / 2, ...map(x, y, i / 2)].join(",");
+    });
+    return [header, ...lines, ""].join("\n");
+  };
+}
+</script></body>"""
+
+WALK = r"""
   await until(computed);
   told.title = at("title").value;
   told.toml = at("toml").textContent;
@@ -136,23 +161,7 @@ WALK = r"""
   at("direction").dispatchEvent(new Event("change", { bubbles: true }));
   told.bearing = [at("release.azimuth").value, textsOfForm()["release.azimuth"]];
 
-  const all = { ...told, hacked: typeof hacked, violations };
-  document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
-})();
-
-// Rows of the motion that is shown, or of a changed one, through a function of x, y and t.
-function rowsNow(changes = {}) {
-  const texts = { ...textsOfForm(), ...changes };
-  const at_ = motionOf(integrate(problemOf(sceneOf(texts, fields)), 20, 2 ** -50));
-  return (header, map) => {
-    const lines = Array.from({ length: 121 }, (_, i) => {
-      const [x, y] = at_(i / 2);
-      return [i / 2, ...map(x, y, i / 2)].join(",");
-    });
-    return [header, ...lines, ""].join("\n");
-  };
-}
-</script></body>"""
+"""
 
 
 @browser
@@ -167,7 +176,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
         "site.gravity_is": "effective",
         "evil": EVIL,
     }
-    script = WALK.replace("%s", EVIL)
+    script = (BEGIN + WALK + END).replace("%s", EVIL)
     told = in_browser(page, script, tmp_path, fragment=f"#{urlencode(asked)}")
     assert told["hacked"] == "undefined" and told["images"] == 0 and told["violations"] == []
     assert told["fits"] and told["fitsAfter"]
@@ -187,7 +196,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     assert "adds the centrifugal force to a g that contains it already" in told["gravity"][1]
     assert "choose ellipsoid under Place" in told["gravity"][1]
     assert "Halve your step" not in told["gravity"][1], "nothing is left to explain"
-    assert "a millionth of the amplitude. To loosen this" in told["gravity"][1]
+    assert "the largest distance of the right motion from the vertical" in told["gravity"][1]
     assert told["loose"][0] == "agrees" and "tolerance that you typed" in told["loose"][1]
     assert told["agrees"][0] == "agrees" and "your output agrees" in told["agrees"][1]
     assert told["swapped"][0] == "disagrees"
@@ -197,6 +206,8 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     assert told["wrongRows"][0] == "disagrees"
     assert "foucault score pendulum.toml mine.csv" in told["wrongRows"][1]
     assert "the axes and the meaning of g" in told["wrongRows"][1]
+    assert "The right motion contains what programs often leave out" in told["wrongRows"][1]
+    assert re.search(r"small angles.*Without it: off by \S+ m up to t = 60 s", told["wrongRows"][1])
     assert told["header"][0] == "refused" and EVIL in told["header"][1]
     assert f"{EVIL}.csv disagrees with {EVIL}" in told["dropped"][1]
     assert "Your file prints y times 2" in told["dropped"][1]
@@ -204,3 +215,115 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     assert told["preset"][0].startswith("80 degrees") and told["preset"][1] == "80"
     assert "release.angle=80" in told["preset"][2]
     assert told["bearing"] == ["60", "30"]
+
+
+JUMPS = r"""
+  await until(computed);
+  await type("pendulum.length", "12.5");
+  const form = () => JSON.stringify([textsOfForm(), at("title").value, at("preset").value, location.hash]);
+  told.before = form();
+  told.after = [];
+  for (const link of document.querySelectorAll("nav a")) {
+    scrollTo(0, 0);
+    link.click(); // as the mouse and Enter do
+    await new Promise((done) => setTimeout(done, 200));
+    told.after.push([form(), scrollY > 0]);
+  }
+  location.hash = "#release.x=0.1&release.y=0";
+  await until(() => at("release.x").value === "0.1");
+  told.other = location.hash;
+"""
+
+
+@browser
+def test_a_link_to_a_section_leaves_the_pendulum_and_its_address(page, tmp_path):
+    asked = {"title": "mine", "release.x": "0.3", "release.y": "0.4", "run.t_end": "60"}
+    told = in_browser(page, BEGIN + JUMPS + END, tmp_path, fragment=f"#{urlencode(asked)}")
+    assert "pendulum.length=12.5" in told["before"]
+    assert [form for form, _ in told["after"]] == [told["before"]] * 3
+    assert all(scrolled for _, scrolled in told["after"][1:])
+    assert "release.x=0.1" in told["other"], "an address with a pendulum is taken"
+
+
+VISIT = r"""
+  await until(computed);
+  const enter = () => at("tolerance").dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+  const outdated = () => at("outdated").textContent;
+  const motion = await player.ready() && rowsNow();
+  const wrong = (size) => motion("t,x,y", (x, y, t) => [x * Math.cos(size * t), y]);
+
+  told.fresh = [outdated(), getComputedStyle(shown).display];
+  hold("pasted", wrong(1e-3));
+  shown.replaceChildren();
+  enter();
+  told.first = await verdict();
+  const [, inFacts] = at("facts").innerText.match(/([0-9.e-]+) m at the end/);
+  const [, inVerdict] = told.first[1].match(/estimated at ([0-9.e-]+) m/);
+  told.estimates = [inFacts, inVerdict];
+  told.largest = () => Number(shown.innerText.match(/largest error\n(\S+) m/)[1]);
+  told.errors = [told.largest()];
+  const address = location.hash;
+  shown.querySelector('a[href="#player"]').click();
+  await new Promise((done) => setTimeout(done, 200));
+  told.link = [at("release.x").value, location.hash === address];
+  shown.focus();
+  told.focused = document.activeElement === shown;
+
+  hold("pasted", wrong(5e-4));
+  told.edited = outdated();
+  shown.replaceChildren(); // where g changes, the rows that were judged are judged once more
+  take();
+  told.again = await verdict();
+  told.stillEdited = outdated();
+  told.second = await paste(at("pasted").value);
+  told.errors.push(told.largest());
+  told.judged = outdated();
+  hold("tolerance", "1e3");
+  told.typed = outdated();
+  shown.replaceChildren();
+  enter();
+  told.loose = await verdict();
+  told.decided = outdated();
+  at("pendulum.length").value = "-1";
+  take();
+  told.wrongForm = outdated();
+  delete told.largest;
+"""
+
+
+@browser
+def test_a_verdict_is_compared_with_the_one_before_and_marked_where_it_is_out_of_date(
+    page, tmp_path
+):
+    asked = {"release.x": "0.3", "release.y": "0.4", "run.t_end": "60", "run.grid_step": "1"}
+    told = in_browser(page, BEGIN + VISIT + END, tmp_path, fragment=f"#{urlencode(asked)}")
+    assert told["fresh"] == ["", "none"], "an empty verdict is no stop of the Tab key"
+    assert told["focused"], "a verdict is one"
+    assert told["first"][0] == "disagrees", "Enter in the tolerance judges what the box has"
+    assert "in the verdict before" not in told["first"][1]
+    assert told["link"] == ["0.3", True], "the verdict leads to the moving picture"
+    assert re.search(r"error at the end\n\S+ m\nrms error\n\S+ m\n", told["first"][1])
+    assert told["estimates"][0] == told["estimates"][1]
+
+    assert "the rows in the box have changed" in told["edited"] == told["stillEdited"]
+    before, after = (f"{error:.3g}" for error in told["errors"])
+    assert float(after) < float(before)
+    line = re.search(
+        r"The largest error is (\S+) m; in the verdict before it was (\S+) m", told["second"][1]
+    )
+    assert [float(word) for word in line.groups()] == [float(after), float(before)]
+    assert told["judged"] == "" and "the tolerance has changed" in told["typed"]
+    assert told["loose"][0] == "agrees" and told["decided"] == ""
+    assert "wrong digit" not in told["loose"][1] and "right up to" in told["loose"][1]
+    assert "the pendulum has changed" in told["wrongForm"]
+
+
+def test_the_lines_to_print_stand_below_where_rows_are_pasted_and_judged(page):
+    text = page.read_text()
+    order = [text.index(word) for word in ('id="drop"', 'id="verdict"', "How to print t,x,y")]
+    assert order == sorted(order)
+
+
+def test_the_page_says_which_equations_it_solves(page):
+    words = html.unescape(re.sub("<.*?>", "", page.read_text()))
+    assert "g − 2 Ω × v − Ω × (Ω × (R + r)) − drag v" in words
