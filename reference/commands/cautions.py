@@ -9,6 +9,7 @@ from math import degrees
 import typer
 
 from ..errors import UnreachableError
+from ..model.normal_gravity import is_on_earth, normal_gravity
 from ..model.start import Start
 from ..scenes.inputs import azimuth_of
 from ..scenes.scene import Scene
@@ -43,10 +44,14 @@ def cautions(scene: Scene, word: str, varied: tuple[str, ...] = ()) -> list[str]
         texts += _gates_along_the_swing(scene)
     is_own = word not in scene_ids()
     if is_own and scene.site.gravity_is == "ellipsoid" and "site.gravity_is" not in varied:
-        texts.append(
+        text = (
             'site.gravity_is is "ellipsoid": gravity alone, to which the centrifugal force is added. '
             'A gravimeter or a table of g gives "effective", which contains it.'
         )
+        if is_on_earth(scene.exact):
+            normal = f"{normal_gravity(float(scene.site.latitude)):.5f}"
+            text += f' Normal at this latitude is gravity = "{normal}", gravity_is = "effective".'
+        texts.append(text)
     if is_own and scene.exact.creeps and "pendulum.drag" not in varied:
         texts.append(
             f"{creeps_in_words(scene)} pendulum.drag is a rate in 1/s: for a swing that halves in 20 min "

@@ -143,7 +143,7 @@ def _missing_means(ranges: dict[str, Any]) -> Iterator[Fact]:
     is_open = not any(ranges[name] for name in ("period_s", "precession_deg_per_h", "full_turn_h"))
     # without an estimate there may be no period at all
     if is_open and "no_estimate" not in ranges:
-        yield "no period", _NO_PERIOD
+        yield "no proved period", _NO_PERIOD
     yield from left_out_facts(ranges["left_out"])
 
 

@@ -374,7 +374,7 @@ def _derived(scene: Scene) -> dict[str, str]:
 
     Each has 15 digits, normal gravity six. What the scene does not have is left out.
     """
-    from ..model.normal_gravity import normal_gravity
+    from ..model.normal_gravity import is_on_earth, normal_gravity
     from ..model.start import Start
 
     start = Start.of(scene.exact, _DERIVED_PREC)
@@ -393,19 +393,9 @@ def _derived(scene: Scene) -> dict[str, str]:
         quantities["rest_y_m"] = rest[1] * k.length
         quantities["rest_z_m"] = rest[2] * k.length
     texts = {name: str(ctx.nstr(ctx.mpf(number), 15)) for name, number in quantities.items()}
-    if _is_on_earth(scene):
+    if is_on_earth(scene.exact):
         texts["normal_gravity_m_s2"] = f"{normal_gravity(float(scene.site.latitude)):.5f}"
     return texts
-
-
-def _is_on_earth(scene: Scene) -> bool:
-    """Return whether a scene has an ellipsoid about as large as the Earth, which turns about as fast."""
-    numbers = scene.exact.by_name
-    if not numbers["site.gravity"]:
-        return False
-    radius = float(numbers["site.equatorial_radius"]) / 6_378_137
-    rate = float(numbers["site.rotation_rate"]) / 7.292115e-5
-    return abs(radius - 1) < 0.01 and abs(rate - 1) < 0.01
 
 
 def _doubles(scene: Scene) -> dict[str, Any] | None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from ..scenes.inputs import Inputs
+
 _EQUATOR = 9.7803267715  # m/s²
 _POLE_EXCESS = 0.001931851353
 _ECCENTRICITY_SQUARED = 0.00669438002290
@@ -19,3 +21,13 @@ def normal_gravity(latitude_deg: float) -> float:
     sine_squared = math.sin(math.radians(latitude_deg)) ** 2
     excess = 1 + _POLE_EXCESS * sine_squared
     return _EQUATOR * excess / math.sqrt(1 - _ECCENTRICITY_SQUARED * sine_squared)
+
+
+def is_on_earth(inputs: Inputs) -> bool:
+    """Return whether there is gravity, and an ellipsoid about as large as the Earth that turns about as fast."""
+    numbers = inputs.by_name
+    if not numbers["site.gravity"]:
+        return False
+    radius = float(numbers["site.equatorial_radius"]) / 6_378_137
+    rate = float(numbers["site.rotation_rate"]) / 7.292115e-5
+    return abs(radius - 1) < 0.01 and abs(rate - 1) < 0.01

@@ -147,7 +147,9 @@ def test_a_proof_without_a_swing_says_why(foucault, words, reason):
 
 def test_uncertain_inputs_that_leave_the_swing_open_say_so(foucault):
     out = foucault("show", "paris", "--set", "run.t_end=20", "--uncertain", "y0=0.1")[1]
-    assert "no period the intervals of these inputs leave it open" in lines.part(out, "Ranges")
+    assert "no proved period the intervals of these inputs leave it open" in lines.part(
+        out, "Ranges"
+    )
 
 
 def test_show_of_a_folder_says_what_reads_it(foucault, tmp_path, monkeypatch):
