@@ -140,7 +140,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     table = PageTable(columns, list(map(_cells, outcomes)), kinds)
     parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
     reasons = [
-        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(_main_lines(outcome))}")
+        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(line.removeprefix("- ") for line in _main_lines(outcome))}")
         for outcome in outcomes
         if outcome.verdict != "agrees" or outcome.since is not None
     ]

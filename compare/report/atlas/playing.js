@@ -48,6 +48,7 @@ function playerOf(element, load) {
 
   async function ready() {
     if (motion) return true;
+    output.textContent = "Computing the motion …";
     const loaded = await load();
     if (loaded) show(loaded);
     return Boolean(loaded);
@@ -152,8 +153,9 @@ function playerOf(element, load) {
 
   button.addEventListener("click", async () => (await ready()) && play(!playing));
   slider.addEventListener("input", async () => {
+    const chosen = Number(slider.value); // when a motion is first shown, it moves the slider
     if (!(await ready())) return;
-    now = slider.value * motion.end;
+    now = chosen * motion.end;
     draw();
   });
   addEventListener("resize", () => motion && draw());

@@ -80,6 +80,7 @@ def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):
     )
     document = json.loads((tmp_path / "page/suite.json").read_text())
     assert (document["agree"], document["verdict"]) == (1, "refused")
+    assert "<li>- " not in page
     first = {path.name: path.read_bytes() for path in (tmp_path / "page").iterdir()}
     assert (
         foucault("score", "--suite", folder, "--no-diagnosis", "--out", tmp_path / "page")[0] == 2
