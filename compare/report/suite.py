@@ -140,7 +140,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     table = PageTable(columns, list(map(_cells, outcomes)), kinds)
     parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
     reasons = [
-        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(line.removeprefix("- ") for line in _main_lines(outcome))}")
+        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(_without_bullets(outcome))}")
         for outcome in outcomes
         if outcome.verdict != "agrees" or outcome.since is not None
     ]
@@ -157,6 +157,11 @@ def _main_lines(outcome: Outcome) -> list[str]:
     """Return the lines for people without details, which are indented."""
     first, *further = outcome.lines
     return [first, *(line for line in further if not line.startswith("  "))]
+
+
+def _without_bullets(outcome: Outcome) -> list[str]:
+    """Return the lines for people as items of a list, which has bullets of its own."""
+    return [line.removeprefix("- ") for line in _main_lines(outcome)]
 
 
 def _cells(outcome: Outcome) -> tuple[str, ...]:
