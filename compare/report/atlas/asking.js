@@ -262,12 +262,14 @@ function knownBy({ bound_m: bound }) {
 }
 
 // What the equations of the right motion contain, with how far the bob is off without it.
-function containedIn({ leftOut }) {
+function containedIn({ leftOut, path, gravity }) {
   const items = [];
+  const error = gravity?.isNamed ? gravity.rest : path.max_error_m;
   for (const [name, text] of Object.entries(CONTAINED)) {
     const size = leftOut?.sizes[name];
     if (size === 0) continue;
-    const moved = size === undefined ? "" : ` Without it: off by ${rounded(size, 2)} m up to t = ${leftOut.until} s.`;
+    const beside = size > error ? ", more than your error" : "";
+    const moved = size === undefined ? "" : ` Without it: off by ${rounded(size, 2)} m up to t = ${leftOut.until} s${beside}.`;
     items.push(made("li", {}, `${text}.${moved}`));
   }
   return ["The right motion contains what programs often leave out:", made("ul", {}, ...items)];
@@ -280,7 +282,7 @@ function furtherSteps(result) {
   const { gravity } = result;
   const steps = [];
   if (gravity && !gravity.helps) {
-    steps.push("The page finds nothing wrong with the clock, the unit, the axes and the meaning of g. What remains are your equations, your numbers, your method and its step.");
+    steps.push("The page finds nothing wrong with the clock, the unit and the axes, and the other meaning of g makes it no better. What remains are your equations, your numbers, your method and its step.");
   } else if (!gravity?.isNamed) {
     steps.push("The page finds nothing wrong with the clock, the unit and the axes. What remains are your equations, your numbers, your method and its step.");
   }

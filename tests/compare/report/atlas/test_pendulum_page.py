@@ -205,7 +205,7 @@ def test_a_link_a_form_and_files_of_a_stranger(page, tmp_path):
     )
     assert told["wrongRows"][0] == "disagrees"
     assert "foucault score pendulum.toml mine.csv" in told["wrongRows"][1]
-    assert "the axes and the meaning of g" in told["wrongRows"][1]
+    assert "the other meaning of g makes it no better" in told["wrongRows"][1]
     assert "The right motion contains what programs often leave out" in told["wrongRows"][1]
     assert re.search(r"small angles.*Without it: off by \S+ m up to t = 60 s", told["wrongRows"][1])
     assert told["header"][0] == "refused" and EVIL in told["header"][1]
