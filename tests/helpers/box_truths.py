@@ -19,7 +19,7 @@ from reference.enclosure.prove import until
 from reference.enclosure.trusted.course import FINISHED
 from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.radius import PhasePoint
-from reference.enclosure.trusted.shapes import Sizes
+from reference.enclosure.trusted.shapes import EnclosedZero, Interval, Sizes
 from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.taylor_step import EARTH, TaylorStep
 
@@ -52,9 +52,17 @@ def defects_hold(module):
                 np.array([0, 6e-4, 8e-4]),
             )
         drag, more = rng.choice([0, 0.5]) * (kind > 0), rng.choice([0, 0.25]) * (kind > 0)
-        d2, jump, actual, jumped = made_up(module, a, b, omega, off, drag, more, rng)
+        gap = rng.normal(size=3) * rng.choice([0, 0.1])
+        d2, jump, actual, jumped = made_up(module, a, b, omega, off, drag, more, gap)
         assert actual <= d2 * SLACK, (kind, actual, d2)
         assert jumped <= jump * SLACK, (kind, jumped, jump)
+
+    # a long p, so that what P multiplies counts: drag that differs, and a jump along p across what Ω differs by
+    still, long, rate = np.zeros(3), np.array([5.0, 0, 0]), np.array([0, 0.05, 0])
+    for off, more in ((still, 0.25), (np.array([0, 0, 1.0]), 0)):
+        d2, jump, actual, jumped = made_up(module, long, rate, still, off, 0, more, 0.1 * long / 5)
+        assert actual <= d2 * SLACK, (actual, d2)
+        assert jumped <= jump * SLACK, (jumped, jump)
 
 
 def growth_holds(module):
@@ -113,7 +121,7 @@ def unit(rng):
     return a / np.linalg.norm(a)
 
 
-def made_up(module, a, b, omega, off, drag, more, rng):
+def made_up(module, a, b, omega, off, drag, more, gap):
     """Bound of d2 and of a jump; the largest that they are for a member of the box whose Ω is omega ± off."""
     balls = SceneBalls(scene(rotation_rate="0.1"), BITS + 64)
     balls.omega_0, balls.drag_0, balls.c = [arb(x) for x in omega], arb(drag), [arb(0)] * 3
@@ -124,7 +132,6 @@ def made_up(module, a, b, omega, off, drag, more, rng):
         Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, (*rows, [0, 0]), EARTH
     )
     bound = module.BoxRadius(balls)
-    gap = rng.normal(size=3) * rng.choice([0, 0.1])
     start = a + gap
     momentum = cross(start, b + cross(omega, start))
     bound.last = PhasePoint([arb(x) for x in start], [arb(x) for x in momentum])
@@ -235,7 +242,28 @@ def chain_rule_holds(module, names=derivative_truths.RUNS):
     )
 
 
+def own_times_hold(module):
+    """Zeros that may come up to the end, in each pendulum's own time: the first ones, or it is refused."""
+    windows = SimpleNamespace(balls=SimpleNamespace(pace=arb(2)), times=[Fraction(0), Fraction(5)])
+
+    def zero(low, high):
+        there = Interval(Fraction(-1), Fraction(3))
+        t = Interval(Fraction(low), Fraction(high))
+        return EnclosedZero("one", 1, t, there, there, there, vy=there, ax=there)
+
+    zeros = zero(2, 3), zero(9, 11), zero(12, 13)
+    own = module.Windows._in_own_time(windows, zeros)
+    assert len(own) == 2
+    for z, ends in zip(own, ((1, 1.5), (4.5, 5.5)), strict=True):
+        assert (z.x, z.vx) == (zeros[0].x, None)
+        found = [float(end) for q in (z.t, z.vy, z.ax) for end in (q.low, q.high)]
+        assert found == pytest.approx([*ends, -2, 6, -4, 12])
+    with pytest.raises(ArithmeticError, match="in order"):
+        module.Windows._in_own_time(windows, (zeros[0], zeros[2], zeros[1]))
+
+
 def all_hold(module, long):
+    own_times_hold(module)
     defects_hold(module)
     growth_holds(module)
     parts_hold(module)

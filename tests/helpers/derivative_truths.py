@@ -15,6 +15,7 @@ from reference.enclosure.approximant import pair
 from reference.enclosure.prove import until
 from reference.enclosure.tangents import TangentSource, scales_of
 from reference.enclosure.trusted.box import Windows
+from reference.enclosure.trusted.course import FINISHED
 from reference.enclosure.trusted.shapes import Box, Covered, Interval, Sizes, Tube
 from reference.enclosure.trusted.system import SceneBalls
 from reference.numbers.columns import GRID
@@ -136,6 +137,107 @@ def sources_hold(module):
             assert float(bounds.b) >= (w + 1.5) * float(bounds.a) + parts[5] - 1e-9
             least = float(bounds.b) + (1.5 + size(W)) * float(bounds.a)
             assert float(bounds.a_rate) >= least - 1e-9
+
+
+def made_up_step(module, rng):
+    """A step with sizes that are drawn, none of them 1 or small beside the others."""
+    names = ("h", "c_size", "omega_size", "drag_size", "w", "S", "lambda_minus", "lambda_plus")
+    constants = SimpleNamespace(**{name: drawn_size(rng) for name in names})
+    constants.lambda_minus *= 4
+    fields = ("p_size", "length", "delta_omega", "delta_drag", "W")
+    return module.BoxStep(constants, **{name: drawn_size(rng) for name in fields})
+
+
+def made_up_norms(module, rng):
+    return module.ResidualNorms(*(drawn_size(rng) for _ in range(6)))
+
+
+def made_up_sensitivity(rng):
+    return SimpleNamespace(
+        omega_q=[drawn_size(rng), -drawn_size(rng), drawn_size(rng)],
+        drag_q=-drawn_size(rng),
+        epsilon=drawn_size(rng),
+        half_width=drawn_size(rng),
+    )
+
+
+def drawn_size(rng):
+    return arb(float(rng.uniform(0.2, 3)))
+
+
+def bounds_hold(module):
+    """Lemma 12.2: the bounds are (12.2c) to (12.2k), computed once more in doubles."""
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        step, norms = made_up_step(module, rng), made_up_norms(module, rng)
+        sensitivity = made_up_sensitivity(rng)
+        assumed = module.Distance(drawn_size(rng), drawn_size(rng))
+        found = module.carried(step, sensitivity, norms, assumed)
+
+        k = SimpleNamespace(**{name: float(x) for name, x in vars(step.constants).items()})
+        p, W = float(step.p_size), float(step.W)
+        length, off, slower = map(float, (step.length, step.delta_omega, step.delta_drag))
+        P, Q, R1, R2 = map(float, (norms.P, norms.Q, norms.R1, norms.R2))
+        eta, G = float(assumed.r), float(assumed.H)
+        turn = k.h * np.linalg.norm([float(x) for x in sensitivity.omega_q])
+        slow = k.h * abs(float(sensitivity.drag_q))
+        S1 = (Q + turn) * eta + (G + off) * P
+        S2 = Q * off + G * turn + slower * (Q + turn * (1 + p**2) + 2 * W * p * P)
+        S2 += k.drag_size * (turn * eta * (1 + p) + 2 * P * (off + W * eta))
+        S2 += slow * (G + 2 * off + W * eta * (1 + p))
+        A = float(norms.off_sphere) + eta * P
+        B = float(norms.off_momentum) + G * P + eta * Q
+        mu = max(k.lambda_minus, k.lambda_plus + k.S**2) + k.drag_size * k.omega_size
+        driven = R1 + S1 + (R2 + S2 + A * k.c_size + B * k.S) / k.w
+        a = (float(sensitivity.epsilon) + length * driven) * np.exp(length * mu / (2 * k.w))
+        b = (k.w + k.S) * a + B
+        rate = b + (k.S + k.omega_size) * a + S1 + R1
+        assert float(found.a) == pytest.approx(a, rel=1e-9)
+        assert float(found.b) == pytest.approx(b, rel=1e-9)
+        assert float(found.a_rate) == pytest.approx(rate, rel=1e-9)
+
+
+def steps_hold(module):
+    """By how much rotation and drag differ within the box, in the time of a step, and the larger rotation."""
+    for omega, omega_0, W in (([0, 3, 4], [0, 0, 2], 5), ([0, 0, 1], [0, 6, 8], 5)):
+        constants = SimpleNamespace(
+            h=arb(0.5), omega=balls(omega), omega_size=arb(float(np.linalg.norm(omega))),
+            drag=arb(0.5), drag_0=arb(2),
+        )  # fmt: skip
+        step = SimpleNamespace(low=Fraction(-1, 2), high=Fraction(1))
+        found = module.box_step(
+            SimpleNamespace(constants=constants, step=step), balls(omega_0), arb(3)
+        )
+        off = np.linalg.norm(np.array(omega) - np.array(omega_0) / 2)
+        assert float(found.delta_omega) == pytest.approx(off)
+        assert float(found.delta_drag) == pytest.approx(1.5)
+        assert float(found.W) == pytest.approx(W)
+        assert (found.length, found.p_size, found.constants) == (1.5, 3, constants)
+
+
+def joins_hold(module):
+    """ε grows by the gap between the proposals of two steps, and nothing else (12.2l); they are what was read."""
+    nothing = balls([0, 0, 0])
+    sensitivity = SimpleNamespace(w0=arb(4), epsilon=arb(0), end=module.Variation(nothing, nothing))
+
+    def join(rows, bits, low, high, h):
+        step = SimpleNamespace(low=Fraction(low), high=Fraction(high))
+        piece = SimpleNamespace(step=step, constants=SimpleNamespace(h=arb(h)))
+        candidate = module.candidate_of(rows, bits)
+        module.InputSensitivity.join(sensitivity, candidate, piece)
+        return candidate.polynomials()
+
+    # P = (1 + s, 2s, 1) and Q/h = (1, s, 0): (0, -2, 1) and (1, -1, 0) where it begins, at s = -1
+    first = join([[4, 4], [0, 8], [4], [2], [0, 2], [0]], 2, -1, 0.5, 0.5)
+    expected = 5**0.5 + 2**0.5 / 4
+    assert float(sensitivity.epsilon) == pytest.approx(expected)
+    assert [float(f(arb(0.5))) for f in first.P] == [1.5, 1, 1]
+    assert [float(f(arb(0.5))) for f in first.Q] == [0.5, 0.25, 0]
+
+    # it ends with (1.5, 1, 1) and (1, 0.5, 0); the next one is (3, 4, 0) and (0, 0, 2) off that
+    for _ in range(2):
+        join([[36], [40], [8], [2], [1], [4]], 3, 0, 1, 0.25)
+        assert float(sensitivity.epsilon) == pytest.approx(expected + 5 + 2 / 4)
 
 
 # output times that are spread over several steps
@@ -276,6 +378,8 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             with pytest.raises(ArithmeticError, match="course alone"):
                 follower.advance(covered[-1])
             found = follower.finish()
+            assert found in FINISHED, "only what counts as proved may be handed on"
+            assert found.proved in FINISHED, "only what counts as proved may be handed on"
             for run in runs[rows] if whole else ():
                 assert outside(found.proved, run) == [], (name, kind)
             for j, key in enumerate(halves):
@@ -308,7 +412,7 @@ def slopes_hold(found, j, truths, case):
 
 
 def radius_holds(module):
-    """Theorem C's bounds of |r - p| and of |H - K| with the scene's Ω, at made-up sizes; nothing where it fails."""
+    """Theorem C's bounds of |r - p| and of |H - K| with the scene's Ω, at made-up sizes; none once it has failed."""
     k, d = SimpleNamespace(w=arb(0.7)), Sizes(arb(0), arb(0), arb(1.5), arb(2), arb(0), arb(0))
     for eta, off in ((0, 1), (1, 0), (1, 1)):
         kept = SimpleNamespace(
@@ -319,6 +423,73 @@ def radius_holds(module):
         found = module.Tangents.by_theorem_c(bound, piece, widened, arb(off))
         assert float(found.r) == pytest.approx(eta)
         assert float(found.H) == pytest.approx(2.7 * eta + 1.5**2 * off)
+
+        # a radius that was not confirmed is kept: what follows from it is no bound
+        kept.grown = unconfirmed
+        module.Tangents.by_theorem_c(bound, piece, widened, arb(off))
+        kept.grown = lambda *_: Covered(None, Tube(arb(1), arb(0), arb(0)))
+        found = module.Tangents.by_theorem_c(bound, piece, widened, arb(off))
+        assert not found.r.is_finite()
+        assert not found.H.is_finite()
+
+    # (12.4g)
+    covered = Covered(SimpleNamespace(constants=k), Tube(arb(3), arb(0), arb(0)))
+    of_scene = module.Tangents.scene_distance(SimpleNamespace(scene=covered), arb(2))
+    assert float(of_scene.r) == pytest.approx(3)
+    assert float(of_scene.H) == pytest.approx(2.7 * 3)
+
+
+def unconfirmed(*_):
+    raise ArithmeticError("a bound has outgrown what it rests on")
+
+
+def reach_holds(module):
+    """(12.4a, b): the scene's own distance, and each half-width times the largest derivative."""
+    rng = np.random.default_rng(8)
+    step = made_up_step(module, rng)
+    sensitivities = [made_up_sensitivity(rng) for _ in range(2)]
+    norms = [made_up_norms(module, rng) for _ in range(2)]
+    assumed, of_scene = (module.Distance(drawn_size(rng), drawn_size(rng)) for _ in range(2))
+    bound = SimpleNamespace(sensitivities=sensitivities)
+    found = module.Tangents.reached(bound, step, norms, assumed, of_scene)
+    r, H = float(of_scene.r), float(of_scene.H)
+    for sensitivity, norm in zip(sensitivities, norms, strict=True):
+        of_input = module.carried(step, sensitivity, norm, assumed)
+        r += float(sensitivity.half_width * (norm.P + of_input.a))
+        H += float(sensitivity.half_width * (norm.Q + of_input.b))
+    assert float(found.distance.r) == pytest.approx(r)
+    assert float(found.distance.H) == pytest.approx(H)
+    assert len(found.bounds) == 2
+
+
+def confirmed(module, start, rates, theorem_c):
+    """What is confirmed where E₁ and G₁ grow with E and G at these rates; None if it is refused."""
+
+    def reached(step, norms, assumed, of_scene):
+        r = arb(start[0]) + arb(rates[0]) * assumed.r
+        H = arb(start[1]) + arb(rates[1]) * assumed.H
+        return module.Reached(module.Distance(r, H), [])
+
+    bound = SimpleNamespace(reached=reached)
+    try:
+        made = module.Tangents.confirmed(
+            bound, None, [], None, module.Distance(*map(arb, theorem_c))
+        )
+    except ArithmeticError:
+        return None
+    return float(made.distance.r), float(made.distance.H)
+
+
+def confirmed_holds(module):
+    """Lemma 12.4: E and G, twice what follows from none, have to be confirmed unless they are Theorem C's."""
+    none = ("inf", "inf")
+    assert confirmed(module, (0, 0), (0, 0), none) == (0, 0)
+    assert confirmed(module, (4, 64), (0.25, 0.25), none) == (6, 96)
+    assert confirmed(module, (4, 64), (0.75, 0.25), none) is None
+    assert confirmed(module, (4, 64), (0.25, 0.75), none) is None
+    assert confirmed(module, (4, 64), (0.75, 0.25), (4, "inf")) == (7, 96)
+    assert confirmed(module, (4, 64), (0.25, 0.75), ("inf", 64)) == (6, 112)
+    assert confirmed(module, (4, 64), (0.75, 0.75), (4, "inf")) is None
 
 
 def widths_hold(module):
@@ -377,9 +548,134 @@ def own_zeros_hold(module):
         assert module.WatchedZeros.own_zero(watched, zero(low, high)) is None
 
 
+def order_is_demanded(module):
+    """The scene's own zeros are found by their order, so they have to be in order at both ends."""
+
+    def narrowed(*times):
+        found = [SimpleNamespace(t=Interval(*map(Fraction, ends))) for ends in times]
+        watched = SimpleNamespace(
+            take_closed=lambda _: None,
+            own_scan=SimpleNamespace(finish=lambda: found),
+            scan=SimpleNamespace(found=[]),
+            derivatives=[],
+        )
+        follower = SimpleNamespace(
+            watched={"xdot": watched}, bound=SimpleNamespace(sensitivities=[])
+        )
+        return module.Derivatives.narrowed(follower, "xdot", ())
+
+    assert narrowed((0, 1), (2, 3), (2, 3)) == module.Narrowed((), ())
+    for wrong in (((2, 3), (0, 4)), ((0, 4), (2, 3)), ((2, 3), (0, 1))):
+        with pytest.raises(ArithmeticError, match="in order"):
+            narrowed(*wrong)
+
+
+def places_hold(module):
+    """Places cover what a step has of a time, and there are none if it has nothing."""
+    piece = step_from(Fraction(3)).covered.piece
+    for begin, end, covered in ((1, 9, (3, 5)), (4, 9, (4, 5)), (1, 4, (3, 4)), (3.5, 4, (3.5, 4))):
+        parts = module.places(piece, Fraction(begin), Fraction(end))
+        low = min(float((4 + part).lower()) for part in parts)
+        high = max(float((4 + part).upper()) for part in parts)
+        assert (low, high) == pytest.approx(covered)
+    for begin, end in ((1, 2), (6, 7), (5.0625, 5.125), (2.875, 2.9375)):
+        assert module.places(piece, Fraction(begin), Fraction(end)) == []
+
+
+def step_from(begin):
+    """A step of two seconds, of which the time is all that is asked for."""
+    step = SimpleNamespace(centre=begin + 1, h=Fraction(1))
+    piece = SimpleNamespace(step=step, begin=begin, end=begin + 2)
+    return SimpleNamespace(covered=SimpleNamespace(piece=piece))
+
+
+def finiteness_holds(module):
+    """Derivatives of a zero are finite if all of their balls are."""
+    one, endless = arb(1), arb(0, "inf")
+    every = [
+        (module.ZeroDerivative(time, azimuth), time is one and azimuth is not endless)
+        for time in (one, endless)
+        for azimuth in (None, one, endless)
+    ]
+    assert module.all_finite([])
+    for derivative, finite in every:
+        for other, other_finite in every:
+            assert module.all_finite([derivative, other]) == (finite and other_finite)
+
+
+def hulls_of_zeros_hold(module):
+    """The derivatives of a zero contain those at every place where it may be."""
+    places = [module.ZeroDerivative(arb(x), arb(10 * x)) for x in (2, 1, 3)]
+    found = module.hull_of_zeros(places)
+    for place in places:
+        assert found.time.contains(place.time)
+        assert found.azimuth.contains(place.azimuth)
+    places = [module.ZeroDerivative(arb(x), None) for x in (2, 1)]
+    assert module.hull_of_zeros(places).azimuth is None
+
+
+def watched_zeros_hold(module):
+    """Every step since a zero's cluster began is kept; its derivatives are those of a single zero, and finite."""
+    at, scenes = [], []
+
+    class Watched(module.WatchedZeros):
+        def of_zero(self, zero, sensitivities):
+            at.append([*self.kept])
+            return zero.derivatives
+
+    scan = SimpleNamespace(found=[], cluster=[])
+    watched = Watched(scan, SimpleNamespace(advance=scenes.append), False)
+
+    def advance(step, *found, still_open):
+        scan.found += [SimpleNamespace(parity=parity, derivatives=[x]) for parity, x in found]
+        scan.cluster = ["a leaf"] if still_open else []
+        watched.advance(step, f"scene in {step}", [])
+
+    finite, endless = (module.ZeroDerivative(time, None) for time in (arb(1), arb("nan")))
+    advance("step 1", still_open=True)
+    advance("step 2", ("one", finite), still_open=False)
+    assert at == [["step 1", "step 2"]]
+    advance("step 3", ("one", finite), ("odd", finite), ("one", endless), still_open=False)
+    assert at[1:] == [["step 3"], ["step 3"]]
+    assert watched.derivatives == [[finite], [finite], [], []]
+    assert scenes == ["scene in step 1", "scene in step 2", "scene in step 3"]
+
+
+def zeros_are_covered(module):
+    """A zero's derivatives are taken at all times that it may have, within the steps that are kept; else refused."""
+
+    class Watched(module.WatchedZeros):
+        def at_place(self, step, s, sensitivities):
+            time = float(step.covered.piece.step.centre) + s
+            return [module.ZeroDerivative(time, None)]
+
+    watched = Watched(None, None, False)
+    watched.kept = [step_from(Fraction(3)), step_from(Fraction(5))]
+    for low, high, covered in ((4, 6, (4, 6)), (4, 8, (4, 7)), (2, 6, (3, 6)), (2, 8, (3, 7))):
+        zero = SimpleNamespace(t=Interval(Fraction(low), Fraction(high)))
+        (found,) = watched.of_zero(zero, [None])
+        ends = float(found.time.lower()), float(found.time.upper())
+        assert ends == pytest.approx(covered)
+    for low, high in ((1, 2), (8, 9)):
+        zero = SimpleNamespace(t=Interval(Fraction(low), Fraction(high)))
+        with pytest.raises(ArithmeticError, match="not covered"):
+            watched.of_zero(zero, [None])
+
+
 def all_hold(module, long):
     intervals_hold(module)
     own_zeros_hold(module)
+    order_is_demanded(module)
+    places_hold(module)
+    finiteness_holds(module)
+    hulls_of_zeros_hold(module)
+    watched_zeros_hold(module)
+    zeros_are_covered(module)
+    joins_hold(module)
+    steps_hold(module)
+    bounds_hold(module)
+    reach_holds(module)
+    confirmed_holds(module)
     widths_hold(module)
     radius_holds(module)
     residuals_hold(module)

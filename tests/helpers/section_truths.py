@@ -356,8 +356,17 @@ def fast_rotation_is_refused(module):
         module.form(SceneBalls(scene(rotation_rate="0.5", equatorial_radius="5"), BITS), "gate 30")
 
 
+def other_words_are_refused(module):
+    """A word that means no section has no form: what was enclosed for it would be called something else."""
+    balls = SceneBalls(scene(), BITS)
+    for word in ("gates 30", "Turn 30", "highest 30", "30", "turn 30@0"):
+        with pytest.raises((ArithmeticError, ValueError)):
+            module.form(balls, word)
+
+
 def all_hold(module, long):
     fast_rotation_is_refused(module)
+    other_words_are_refused(module)
     forms_hold(module)
     releases_hold(module)
     wide_forms_hold(module)
