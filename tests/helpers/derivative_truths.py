@@ -9,16 +9,20 @@ import pytest
 from boxes import WORDS, azimuths, drawn, inputs_of, moved, outside, truth, widened
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
-from flint import arb, arb_poly, ctx
+from flint import arb, arb_poly, ctx, fmpz, fmpz_poly
 
 from reference.enclosure.approximant import pair
 from reference.enclosure.prove import until
 from reference.enclosure.tangents import TangentSource, scales_of
-from reference.enclosure.trusted.box import Windows
+from reference.enclosure.trusted.balls import size as vector_size
+from reference.enclosure.trusted.box import BoxBalls, BoxRadius, Windows
 from reference.enclosure.trusted.course import FINISHED
+from reference.enclosure.trusted.defect import Piece
 from reference.enclosure.trusted.shapes import Box, Covered, Interval, Sizes, Tube
 from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.tube import tube
 from reference.numbers.columns import GRID
+from reference.numbers.taylor_step import EARTH, TaylorStep
 
 BITS = 96
 SLACK = 1 + 1e-9
@@ -159,6 +163,34 @@ def made_up_sensitivity(rng):
         epsilon=drawn_size(rng),
         half_width=drawn_size(rng),
     )
+
+
+def scene_motion_holds(module):
+    """p and K₀ = p × (p' + hΩ₀ × p) on a step, where p is a + b s."""
+    rng = np.random.default_rng(9)
+    a, b = rng.integers(-8, 9, size=(2, 3))
+    unit, h, omega_0 = 4, 0.5, np.array([0.5, -1, 2])
+    piece = SimpleNamespace(
+        constants=SimpleNamespace(h=arb(h)),
+        unit=fmpz(unit),
+        p=[fmpz_poly([int(x), int(y)]) for x, y in zip(a, b, strict=True)],
+        v=[fmpz_poly([int(y)]) for y in b],
+    )
+    found = module.scene_motion(piece, balls(omega_0))
+    assert [float(x) for x in found.omega_0] == pytest.approx(h * omega_0)
+    for s in (-1, 0.25, 1):
+        p = (a + b * s) / unit
+        assert [float(f(arb(s))) for f in found.p] == pytest.approx(p)
+        K_0 = cross(p, b / unit + cross(h * omega_0, p))
+        assert [float(f(arb(s))) for f in found.K_0] == pytest.approx(K_0)
+
+
+def horizontals_hold(module):
+    """The part of a vector across c: with c downwards, x and y; else y is up × x."""
+    for c, y in (((0, 0, -2), 2), ((0, 3, 0), 3), ((0, 3, 4), 0.2), ((0, 0.3, -0.4), 3.4)):
+        found = module.horizontal(balls([1, 2, 3]), balls(c))
+        assert float(found.x) == 1
+        assert float(found.y) == pytest.approx(y)
 
 
 def drawn_size(rng):
@@ -382,6 +414,10 @@ def runs_hold(module, names=RUNS, kinds=KINDS, windows_of=Windows):
             assert found.proved in FINISHED, "only what counts as proved may be handed on"
             for run in runs[rows] if whole else ():
                 assert outside(found.proved, run) == [], (name, kind)
+            if kind == "point":  # where all is as narrow as it can be
+                transits = zip(found.proved.zeros["xdot"], found.zeros["xdot"], strict=True)
+                for z, derived in transits:
+                    assert len(derived.times) == len(halves) * (z.parity == "one"), (name, kind)
             for j, key in enumerate(halves):
                 for truths in slopes[key] if whole else slopes[key][:1]:
                     slopes_hold(found, j, truths, (name, kind, key))
@@ -431,6 +467,12 @@ def radius_holds(module):
         found = module.Tangents.by_theorem_c(bound, piece, widened, arb(off))
         assert not found.r.is_finite()
         assert not found.H.is_finite()
+
+    # what a ball says, at its upper end
+    kept = SimpleNamespace(grown=lambda *_: Covered(None, Tube(arb(1, 0.5), arb(0), arb(0))))
+    bound = SimpleNamespace(box_radius=kept, box_radius_holds=True)
+    found = module.Tangents.by_theorem_c(bound, piece, widened, arb(1))
+    assert float(found.H.lower()) >= (2.7 * 1.5 + 1.5**2) / SLACK
 
     # (12.4g)
     covered = Covered(SimpleNamespace(constants=k), Tube(arb(3), arb(0), arb(0)))
@@ -521,6 +563,8 @@ def intervals_hold(module):
         assert (got.low, got.high) == found
     wide = Interval(Fraction(-90), Fraction(90))
     assert module.within(wide, own, sensitivities, [arb(2), arb("nan")]) == wide
+    far = [SimpleNamespace(half_width=arb(0.5, 0.25), scale=arb(4))]
+    assert module.within(wide, own, far, [arb(2)]).high >= 2 + 6
     with pytest.raises(ArithmeticError, match="contradict"):
         module.within(Interval(Fraction(8), Fraction(9)), own, sensitivities, derivatives)
 
@@ -548,23 +592,84 @@ def own_zeros_hold(module):
         assert module.WatchedZeros.own_zero(watched, zero(low, high)) is None
 
 
-def order_is_demanded(module):
-    """The scene's own zeros are found by their order, so they have to be in order at both ends."""
+def tubes_hold(module):
+    """The tube has the smaller of two bounds, of H with each pendulum's Ω (12.4f); ε goes on from the one of |a|."""
+    inputs = scene(rotation_rate="0.7", equatorial_radius="5", t_end="1")
+    box = widened(inputs, {"rotation_rate": "0.125"})
+    halves = {"site.rotation_rate": Fraction(1, 8)}
+    windows_balls = BoxBalls(box, BITS)
+    rows = ([2 << BITS], [1 << BITS], [0], [0])  # |p|² = 5, so that it is not 1
+    step = TaylorStep(Fraction(0), Fraction(1, 2), Fraction(0), Fraction(1), BITS, rows, EARTH)
+    for derived, kept in (((0.25, 0.5), (0.5, 0.25)), ((0.5, 0.25), (0.25, 0.5))):
+        reached, theorem_c = (module.Distance(*map(arb, pair)) for pair in (derived, kept))
 
-    def narrowed(*times):
+        class Bound(module.Tangents):
+            def by_theorem_c(self, *_, found=theorem_c):
+                return found
+
+            def confirmed(self, *_, found=reached):
+                return module.Reached(found, [module.Carried(arb(5), arb(6), arb(7))])
+
+        bound = Bound(windows_balls, halves, {"site.rotation_rate": 0})
+        piece = Piece(windows_balls, step)
+        bound.point = SimpleNamespace(
+            advance=lambda piece: Covered(piece, Tube(arb(0), arb(0), arb(0)))
+        )
+        found = bound.advance(piece, [([[0]] * 6, 0)])
+        off = [
+            x - h_x for x, h_x in zip(piece.constants.omega, piece.constants.omega_0, strict=True)
+        ]
+        gamma = arb(0.25) + 5 * vector_size(off)
+        sizes = BoxRadius(windows_balls).widened(piece).sizes
+        for x, y in zip(found.tube, tube(piece.constants, sizes, arb(0.25), gamma), strict=True):
+            assert float(x) == pytest.approx(float(y), rel=1e-9)
+        assert bound.eta == 0.25
+        assert [(tangent.a, tangent.a_rate) for tangent in bound.tangents] == [(5, 7)]
+        assert [sensitivity.epsilon for sensitivity in bound.sensitivities] == [5]
+
+
+def output_times_hold(module):
+    """An output time is taken wherever a pendulum may have it, until all of them have passed it."""
+    taken = []
+
+    def take(n, step, at):
+        ends = [(x.lower(), x.upper()) for x in at]
+        low = float(min(low for low, _ in ends) + step.covered.piece.step.centre.numerator)
+        high = float(max(high for _, high in ends) + step.covered.piece.step.centre.numerator)
+        taken.append((n, *(round(x, 6) for x in (low, high))))
+
+    pace = Interval(Fraction(3, 4), Fraction(5, 4))
+    follower = SimpleNamespace(
+        done=0, windows=SimpleNamespace(times=[4, 8, 16], pace=pace), take_output_time=take
+    )
+    passed = []
+    for begin in (2, 4, 6, 8, 10):
+        module.Derivatives.take_output_times(follower, step_from(Fraction(begin)))
+        passed.append(follower.done)
+    expected = [(0, 3, 4), (0, 4, 5), (1, 6, 6), (1, 6, 8), (1, 8, 10), (2, 12, 12)]
+    assert taken == expected
+    assert passed == [0, 1, 1, 2, 2]
+
+
+def order_is_demanded(module):
+    """The scene's own zeros are found by their order, so they have to be in order; and the end closes the last."""
+
+    def narrowed(*times, proved=()):
         found = [SimpleNamespace(t=Interval(*map(Fraction, ends))) for ends in times]
+        derivatives = []
         watched = SimpleNamespace(
-            take_closed=lambda _: None,
+            take_closed=lambda _: derivatives.append([]),
             own_scan=SimpleNamespace(finish=lambda: found),
-            scan=SimpleNamespace(found=[]),
-            derivatives=[],
+            scan=SimpleNamespace(found=list(proved)),
+            derivatives=derivatives,
         )
         follower = SimpleNamespace(
             watched={"xdot": watched}, bound=SimpleNamespace(sensitivities=[])
         )
-        return module.Derivatives.narrowed(follower, "xdot", ())
+        return module.Derivatives.narrowed(follower, "xdot", proved)
 
-    assert narrowed((0, 1), (2, 3), (2, 3)) == module.Narrowed((), ())
+    assert narrowed(proved=("a zero",)).zeros == ("a zero",)
+    assert narrowed((0, 1), (2, 3), (2, 3)).zeros == ()
     for wrong in (((2, 3), (0, 4)), ((0, 4), (2, 3)), ((2, 3), (0, 1))):
         with pytest.raises(ArithmeticError, match="in order"):
             narrowed(*wrong)
@@ -666,16 +771,20 @@ def all_hold(module, long):
     intervals_hold(module)
     own_zeros_hold(module)
     order_is_demanded(module)
+    output_times_hold(module)
     places_hold(module)
     finiteness_holds(module)
     hulls_of_zeros_hold(module)
     watched_zeros_hold(module)
     zeros_are_covered(module)
+    scene_motion_holds(module)
+    horizontals_hold(module)
     joins_hold(module)
     steps_hold(module)
     bounds_hold(module)
     reach_holds(module)
     confirmed_holds(module)
+    tubes_hold(module)
     widths_hold(module)
     radius_holds(module)
     residuals_hold(module)
