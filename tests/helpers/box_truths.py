@@ -1,5 +1,6 @@
 """What has to hold for the trusted code of boxes, whichever module has it: box.py, or a mutation of it."""
 
+from dataclasses import replace
 from fractions import Fraction
 from random import Random
 from types import SimpleNamespace
@@ -11,16 +12,17 @@ from boxes import WORDS, drawn, outside, truth, widened
 from derivative_truths import cross
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
-from flint import arb, fmpq
+from flint import arb, fmpq, fmpz_poly
 
 import reference.enclosure.trusted.derivatives
 from reference.enclosure.approximant import pair
 from reference.enclosure.prove import until
 from reference.enclosure.trusted.course import FINISHED
 from reference.enclosure.trusted.defect import Piece
-from reference.enclosure.trusted.radius import PhasePoint
-from reference.enclosure.trusted.shapes import EnclosedZero, Interval, Sizes
+from reference.enclosure.trusted.radius import Jump, PhasePoint
+from reference.enclosure.trusted.shapes import Box, Covered, EnclosedZero, Interval, Sizes, Tube
 from reference.enclosure.trusted.system import SceneBalls
+from reference.enclosure.trusted.tube import tube
 from reference.numbers.taylor_step import EARTH, TaylorStep
 
 BITS, UNIT = 96, 1 << 96
@@ -242,6 +244,115 @@ def chain_rule_holds(module, names=derivative_truths.RUNS):
     )
 
 
+def radii_hold(module):
+    """Lemma 11.4: the radius and what is refused are those of (11.4a, b), computed once more in doubles."""
+    rng, accepted = np.random.default_rng(10), 0
+    for _ in range(60):
+        w, S, c, drag, omega, below, above, P, K = rng.uniform(0.2, 2, size=9)
+        eta, jump, d1, d2, tau = rng.uniform(0.002, 0.02, size=5)
+        length = rng.uniform(0.1, 0.6)
+        below *= rng.choice([1, 4])
+        constants = SimpleNamespace(
+            w=arb(w), S=arb(S), c_size=arb(c), drag_size=arb(drag), omega_size=arb(omega),
+            lambda_minus=arb(below), lambda_plus=arb(above),
+        )  # fmt: skip
+        sizes = Sizes(arb(d1), arb(d2), arb(P), arb(K), arb(tau), arb(0))
+        step = SimpleNamespace(low=Fraction(-1, 4), high=Fraction(length) - Fraction(1, 4))
+        piece = SimpleNamespace(constants=constants, step=step)
+
+        driven = eta + jump + length * ((c + K**2) * tau / (2 * w) + d2 / w + d1)
+        still = max(below, above + S**2) + drag * omega * P
+        E = 2 * driven * np.exp(length * still / (2 * w))
+        curved = max(below, above + (S + (w + K) * E) ** 2) + (c + K**2) * E + drag * omega * P
+        radius = driven * np.exp(min(length * curved / (2 * w), 50))
+
+        bound = SimpleNamespace(eta=arb(eta))
+        widened_step = module.Widened(sizes, arb(jump))
+        if radius >= E:
+            with pytest.raises(ArithmeticError, match="outgrown"):
+                module.BoxRadius.grown(bound, piece, widened_step)
+            continue
+        accepted += 1
+        found = module.BoxRadius.grown(bound, piece, widened_step).tube
+        wanted = tube(constants, sizes, arb(radius), arb((w + K) * radius))
+        assert float(bound.eta) == pytest.approx(radius, rel=1e-9)
+        assert [float(x) for x in found] == pytest.approx([float(x) for x in wanted], rel=1e-9)
+    assert 20 < accepted < 55
+
+
+def widening_holds(module):
+    """Lemmas 11.2 and 11.3: (11.2a, b) and (11.3a), computed once more in doubles."""
+    rng = np.random.default_rng(11)
+    for sign in (1, -1):
+        omega, omega_0, delta_p, delta_K = rng.uniform(0.2, 3, size=(4, 3))
+        h, omega_size, drag, p_rate, tau_rate, w0, P, d2 = rng.uniform(0.2, 3, size=8)
+        rows = rng.integers(-9, 10, size=(3, 3))
+        constants = SimpleNamespace(
+            h=arb(h), omega=[arb(x) for x in omega], omega_0=[arb(x) for x in omega_0],
+            omega_size=arb(omega_size), drag=arb(drag), drag_0=arb(drag + 0.5 * sign),
+        )  # fmt: skip
+        piece = SimpleNamespace(
+            constants=constants,
+            norms=SimpleNamespace(p_rate=arb(p_rate), tau_rate=arb(tau_rate)),
+            sizes=Sizes(arb(1), arb(d2), arb(P), arb(2), arb(3), arb(4)),
+            p=[fmpz_poly([int(x) for x in row]) for row in rows],
+            step=SimpleNamespace(bits=2),
+        )
+        jump = Jump([arb(x) for x in delta_p], [arb(x) for x in delta_K])
+        bound = SimpleNamespace(
+            join=lambda _, jump=jump: jump, balls=SimpleNamespace(prec=64, w0=arb(w0))
+        )
+        found = module.BoxRadius.widened(bound, piece)
+
+        off = np.linalg.norm(omega - omega_0)
+        along = (np.abs(rows).sum(axis=1) / 4) @ np.abs(omega - omega_0)
+        D2 = d2 + 2 * along * p_rate + off * tau_rate + 0.5 * P * p_rate
+        D2 += P**2 * off * (omega_size + np.linalg.norm(omega_0))
+        p_jump = np.linalg.norm(delta_p)
+        K_jump = np.linalg.norm(delta_K) + 2 * off / h * p_jump * (2 * P + p_jump)
+        assert float(found.sizes.d2) == pytest.approx(D2, rel=1e-9)
+        assert float(found.jump) == pytest.approx(p_jump + K_jump / w0, rel=1e-9)
+        assert found.sizes._replace(d2=piece.sizes.d2) == piece.sizes
+
+
+def hulls_hold(module):
+    """A state at an output time is the hull of those at all times when a pendulum may have it."""
+    balls = SceneBalls(scene(rotation_rate="0"), BITS + 64)
+    windows = SimpleNamespace(
+        course=SimpleNamespace(open=False), times=[4, 8, 16], done=0, hulls=[],
+        pace=Interval(Fraction(3, 4), Fraction(5, 4)),
+    )  # fmt: skip
+    passed = []
+    for begin in (2, 4, 6, 8, 10):  # x is the time
+        rows = ([(begin + 1) << BITS, 1 << BITS], [0], [0], [0])
+        step = TaylorStep(
+            Fraction(begin + 1), Fraction(1), Fraction(-1), Fraction(1), BITS, rows, EARTH
+        )
+        covered = Covered(Piece(balls, step), Tube(arb(0), arb(0), arb(0)))
+        module.Windows.advance(windows, covered)
+        passed.append(windows.done)
+    ends = [(float(x.lower()), float(x.upper())) for x, *_ in windows.hulls]
+    for found, wanted in zip(ends, ((3, 5), (6, 10), (12, 12)), strict=True):
+        assert found == pytest.approx(wanted)
+    assert passed == [0, 1, 1, 2, 2]
+
+
+def wrong_boxes_are_refused(module):
+    """A drag below 0 at either end, a run from a later time on, and one that was not followed to its end."""
+    low, high = (scene(drag=drag) for drag in ("0", "1e-4"))
+    below = replace(low, drag=Fraction(-1, 10**4))
+    for ends in ((below, high), (high, below)):
+        with pytest.raises(ArithmeticError, match="drag"):
+            module.BoxBalls(Box(low, *ends), BITS)
+    with pytest.raises(ArithmeticError, match="from its release on"):
+        module.Windows(Box(low, low, low), BITS, [Fraction(1), Fraction(2)], ())
+    windows = SimpleNamespace(
+        course=SimpleNamespace(finish=lambda: None), done=1, times=[Fraction(0), Fraction(1)]
+    )
+    with pytest.raises(ArithmeticError, match="do not end with the run"):
+        module.Windows.finish(windows)
+
+
 def own_times_hold(module):
     """Zeros that may come up to the end, in each pendulum's own time: the first ones, or it is refused."""
     windows = SimpleNamespace(balls=SimpleNamespace(pace=arb(2)), times=[Fraction(0), Fraction(5)])
@@ -264,6 +375,10 @@ def own_times_hold(module):
 
 def all_hold(module, long):
     own_times_hold(module)
+    hulls_hold(module)
+    wrong_boxes_are_refused(module)
+    radii_hold(module)
+    widening_holds(module)
     defects_hold(module)
     growth_holds(module)
     parts_hold(module)

@@ -548,6 +548,18 @@ def widths_hold(module):
         assert refused, widths
 
 
+def ends_are_demanded(module):
+    """A run that was not followed to its end proves nothing."""
+    for done, states in ((1, 2), (2, 1)):
+        follower = SimpleNamespace(
+            windows=SimpleNamespace(finish=lambda: None, times=[Fraction(0), Fraction(1)]),
+            done=done,
+            states=[()] * states,
+        )
+        with pytest.raises(ArithmeticError, match="do not end with the run"):
+            module.Derivatives.finish(follower)
+
+
 def intervals_hold(module):
     """What follows for all inputs is near the scene's own number, and in the wide interval."""
     sensitivities, ends = (
@@ -768,6 +780,7 @@ def zeros_are_covered(module):
 
 
 def all_hold(module, long):
+    ends_are_demanded(module)
     intervals_hold(module)
     own_zeros_hold(module)
     order_is_demanded(module)
