@@ -124,6 +124,7 @@ RELEASES = [  # position and velocity, or angle, azimuth and their rates
     ),
     {"x": "3", "y": "4", "vx": "-0.4", "vy": "0.3"},
     {"x": "3", "y": "4", "vx": "-0.4", "vy": f"0.3{'0' * 60}1"},
+    {"x": "3", "y": "3", "length": "64"},  # the balls of x and y are exact, and equal
     *({"angles": angles} for angles in product(("0", "5", "180"), ("0", "30", "90"), "02", "03")),
     {"angles": ("5", f"30.{'0' * 60}1", "0", "3")},
 ]
@@ -242,6 +243,58 @@ def few_bits_hold(module):
             )
             whole = at(ball(low).union(ball(high)))
             assert all(whole.contains(y) for y in both), "on a part"
+
+
+def losses_hold(module):
+    """What integers over few bits lose is (13.1c, d), in addition to (13.1a, b)."""
+    bits = 6
+    balls = SceneBalls(scene(rotation_rate="0"), BITS)
+    h = Fraction(1, 2)
+    rows = ([40, 0, 12], [0, 100], [-128], [0])
+    step = TaylorStep(Fraction(0), h, Fraction(-1), Fraction(1), bits, rows, EARTH)
+    a = [Fraction(n, 7) for n in (3, -5, 2)]
+    b = [Fraction(n, 11) for n in (-4, 9, 6)]
+    d = Fraction(8, 13)
+    missed_a, missed_b, missed_d = (
+        float(sum(x - Fraction(x * 2**bits // 1, 2**bits) for x in every))
+        for every in ([h * x for x in a], b, [h * d])
+    )
+    eta, U, A = 0.01, 0.02, 0.04
+    with ctx.workprec(BITS):
+        piece = Piece(balls, step)
+        affine = module.AffineForm([ball(x) for x in a], [ball(x) for x in b], ball(d))
+        covered = Covered(piece, Tube(arb(eta), arb(U), arb(A)))
+        made = module.SectionOnStep(covered, affine)
+    P, K = float(piece.sizes.p), float(piece.sizes.k)
+    a_size, b_size = (float(np.linalg.norm([float(x) for x in every])) for every in (a, b))
+    value = a_size * float(h) * eta + b_size * U + missed_a * P + missed_b * K + missed_d
+    rate = a_size * float(h) * U + b_size * A + missed_a * K + missed_b * 3 * K
+    assert float(made.value.off.rad()) == pytest.approx(value, rel=1e-6)
+    assert float(made.rate.off.rad()) == pytest.approx(rate, rel=1e-6)
+
+
+def second_order_holds(module):
+    """Lemma 13.4: (13.4a, b) by hand, where b·p is constant; where it may be 0, Lemma 13.1 alone."""
+    balls = SceneBalls(scene(rotation_rate="0"), BITS)
+    unit = 1 << 20
+    rows = ([0, 3 * unit // 4, unit // 4], [0], [-3 * unit // 2], [0])  # x = 3s/4 + s²/4, w = 0
+    step = TaylorStep(Fraction(0), Fraction(1), Fraction(-1), Fraction(1), 20, rows, EARTH)
+    eta, U, A = 0.01, 0.02, 0.04
+    with ctx.workprec(BITS):
+        covered = Covered(Piece(balls, step), Tube(arb(eta), arb(U), arb(A)))
+        zero = [arb(0)] * 3
+        across = module.AffineForm(zero, [arb(0), arb(0), arb(2)], arb(0))
+        along = module.AffineForm(zero, [arb(2), arb(0), arb(0)], arb(0))
+        made = module.ApsisOnStep(covered, across)
+        plain, same = (kind(covered, along) for kind in (module.SectionOnStep, module.ApsisOnStep))
+    # |x| <= 1, |x'| <= 5/4, |x''| = 1/2; p·p' = 9s/16 + 9s²/16 + s³/8, and its derivative
+    value = 2 / 3 * (2 * U + 2 * (eta * (5 / 4 + U) + 5 / 4))
+    second = eta * (1 / 2 + A) + U * (5 / 2 + U) + 9 / 16 + 9 / 8 + 3 / 8
+    rate = 2 / 3 * (2 * A + 2 * second)
+    assert float(made.value.off.rad()) == pytest.approx(value, rel=1e-6)
+    assert float(made.rate.off.rad()) == pytest.approx(rate, rel=1e-6)
+    assert same.value.off.rad() == plain.value.off.rad()
+    assert same.rate.off.rad() == plain.rate.off.rad()
 
 
 def on_sphere(angle, size=1.0):
@@ -368,6 +421,8 @@ def all_hold(module, long):
     fast_rotation_is_refused(module)
     other_words_are_refused(module)
     forms_hold(module)
+    losses_hold(module)
+    second_order_holds(module)
     releases_hold(module)
     wide_forms_hold(module)
     apses_hold(module)
