@@ -609,7 +609,7 @@ def tubes_hold(module):
     inputs = scene(rotation_rate="0.7", equatorial_radius="5", t_end="1")
     box = widened(inputs, {"rotation_rate": "0.125"})
     halves = {"site.rotation_rate": Fraction(1, 8)}
-    windows_balls = BoxBalls(box, BITS)
+    box_balls = BoxBalls(box, BITS)
     rows = ([2 << BITS], [1 << BITS], [0], [0])  # |p|² = 5, so that it is not 1
     step = TaylorStep(Fraction(0), Fraction(1, 2), Fraction(0), Fraction(1), BITS, rows, EARTH)
     for derived, kept in (((0.25, 0.5), (0.5, 0.25)), ((0.5, 0.25), (0.25, 0.5))):
@@ -622,18 +622,17 @@ def tubes_hold(module):
             def confirmed(self, *_, found=reached):
                 return module.Reached(found, [module.Carried(arb(5), arb(6), arb(7))])
 
-        bound = Bound(windows_balls, halves, {"site.rotation_rate": 0})
-        piece = Piece(windows_balls, step)
+        bound = Bound(box_balls, halves, {"site.rotation_rate": 0})
+        piece = Piece(box_balls, step)
         bound.point = SimpleNamespace(
             advance=lambda piece: Covered(piece, Tube(arb(0), arb(0), arb(0)))
         )
         found = bound.advance(piece, [([[0]] * 6, 0)])
-        off = [
-            x - h_x for x, h_x in zip(piece.constants.omega, piece.constants.omega_0, strict=True)
-        ]
+        k = piece.constants
+        off = [x - y for x, y in zip(k.omega, k.omega_0, strict=True)]
         gamma = arb(0.25) + 5 * vector_size(off)
-        sizes = BoxRadius(windows_balls).widened(piece).sizes
-        for x, y in zip(found.tube, tube(piece.constants, sizes, arb(0.25), gamma), strict=True):
+        sizes = BoxRadius(box_balls).widened(piece).sizes
+        for x, y in zip(found.tube, tube(k, sizes, arb(0.25), gamma), strict=True):
             assert float(x) == pytest.approx(float(y), rel=1e-9)
         assert bound.eta == 0.25
         assert [(tangent.a, tangent.a_rate) for tangent in bound.tangents] == [(5, 7)]
@@ -645,10 +644,10 @@ def output_times_hold(module):
     taken = []
 
     def take(n, step, at):
-        ends = [(x.lower(), x.upper()) for x in at]
-        low = float(min(low for low, _ in ends) + step.covered.piece.step.centre.numerator)
-        high = float(max(high for _, high in ends) + step.covered.piece.step.centre.numerator)
-        taken.append((n, *(round(x, 6) for x in (low, high))))
+        centre = int(step.covered.piece.step.centre)
+        low = min(float((centre + s).lower()) for s in at)
+        high = max(float((centre + s).upper()) for s in at)
+        taken.append((n, round(low, 6), round(high, 6)))
 
     pace = Interval(Fraction(3, 4), Fraction(5, 4))
     follower = SimpleNamespace(
