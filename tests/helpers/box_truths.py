@@ -12,7 +12,7 @@ from boxes import WORDS, drawn, outside, truth, widened
 from derivative_truths import cross
 from enclosure_oracle import scene
 from enclosure_recurrence import Recurrence
-from flint import arb, fmpq, fmpz_poly
+from flint import arb, arb_series, fmpq, fmpz_poly
 
 import reference.enclosure.trusted.derivatives
 from reference.enclosure.approximant import pair
@@ -315,6 +315,41 @@ def widening_holds(module):
         assert found.sizes._replace(d2=piece.sizes.d2) == piece.sizes
 
 
+def plumb_lines_hold(module):
+    """(11.1b) in doubles; effective gravity is along the plumb line, and contains what the rotation takes off."""
+    site = {"gravity": 10, "altitude": 2, "rotation_rate": 0.5, "equatorial_radius": 8}
+    site |= {"flattening": 0.25, "latitude": 30}
+    wide = {name: Fraction(x) for name, x in site.items()}
+    lean, pull = module.plumb(wide | {"gravity_is": "ellipsoid"})
+    push = 0.5**2 * (8 / np.sqrt(1 - 0.25 * 1.75 * np.sin(np.pi / 6) ** 2) + 2)
+    aside, down = push * np.sin(np.pi / 3) / 2, 10 - push * (1 + np.cos(np.pi / 3)) / 2
+    assert float(lean) == pytest.approx(np.arctan2(aside, down), rel=1e-9)
+    assert float(pull) == pytest.approx(np.hypot(aside, down), rel=1e-9)
+    lean, pull = module.plumb(wide | {"gravity_is": "effective"})
+    assert float(lean) == 0
+    assert float(pull) == pytest.approx(10)
+
+
+def spheres_hold(module):
+    """Below the suspension z and vz follow from the sphere (11.6, 11.7), of series as well; else they stay."""
+    x, y, vx, vy = arb(0.48), arb(0.36), arb(1), arb(2)
+    for z, vz, found in ((arb(-1, 0.5), arb(0, 9), (-0.8, 1.5)), (arb(1, 0.5), arb(2), (1, 2))):
+        made = module.on_the_sphere(x, y, z, vx, vy, vz)
+        assert made[:2] + made[3:5] == [x, y, vx, vy]
+        assert [float(made[2]), float(made[5])] == pytest.approx(found)
+        assert float(made[5].rad()) < 1e-9
+
+    # along x: z' = -x x'/z, and vz' = -(x' vx)/z + x vx z'/z²
+    none = arb_series([arb(0), arb(0)], 2)
+    vague = arb_series([arb(-1, 0.5), arb(0, 9)], 2), arb_series([arb(0, 9), arb(0, 9)], 2)
+    along = arb_series([arb(0.6), arb(1)], 2)
+    speed = arb_series([arb(2), arb(0)], 2)
+    *_, z, _, _, vz = module.on_the_sphere(along, none, vague[0], speed, none, vague[1])
+    assert [float(z[0]), float(z[1])] == pytest.approx([-0.8, 0.75])
+    assert [float(vz[0]), float(vz[1])] == pytest.approx([1.5, 2.5 + 1.2 * 0.75 / 0.64])
+    assert all(float(q[k].rad()) < 1e-9 for q in (z, vz) for k in (0, 1))
+
+
 def hulls_hold(module):
     """A state at an output time is the hull of those at all times when a pendulum may have it."""
     balls = SceneBalls(scene(rotation_rate="0"), BITS + 64)
@@ -375,6 +410,8 @@ def own_times_hold(module):
 
 def all_hold(module, long):
     own_times_hold(module)
+    plumb_lines_hold(module)
+    spheres_hold(module)
     hulls_hold(module)
     wrong_boxes_are_refused(module)
     radii_hold(module)
