@@ -109,10 +109,10 @@ def _momentum(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
 
 def _force(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     """Return the force on a bob, with the terms of the centrifugal force given one by one."""
-    n, v, constants, centrifugal = numbers[:3], numbers[3:6], numbers[6:11], numbers[11:]
-    *turn_and_pull_, drag = constants
-    k = replace(_constants(turn_and_pull_, drag), centrifugal=tuple(centrifugal))
-    return force(tuple(n), tuple(v), k)
+    *turn_and_pull_, drag = numbers[6:11]
+    centrifugal = tuple(numbers[11:])
+    k = replace(_constants(turn_and_pull_, drag), centrifugal=centrifugal)
+    return force(tuple(numbers[:3]), tuple(numbers[3:6]), k)
 
 
 def _tangential(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
