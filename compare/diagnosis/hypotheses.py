@@ -151,7 +151,7 @@ class Hypothesis(Claim):
 
     @property
     def untyped(self) -> list[Cause]:
-        """Those whose number nobody typed; beside such an input, as the drag of damped steps, no factor is typed."""
+        """Those whose number nobody typed; beside such an input, a rate that is typed as a factor alone is one too."""
         inputs = [cause for cause in self.numbers if cause not in DRIFT]
         untyped = [cause for cause in inputs if not self._is_typed(cause)]
         if all(cause.stage == "integrator" for cause in untyped):

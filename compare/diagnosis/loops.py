@@ -1,9 +1,9 @@
-"""Steps of a linear model whose statements each use what the ones before have changed.
+"""Steps of a linear model as products of matrices: statements in turn, and damped steps of named methods.
 
     vx += h (-q x + f vy);  vy += h (-q y - f vx);  x += h vx;  y += h vy
 
-is no named method: the second statement has the new vx. One step is a 4 × 4 matrix, and so are the
-steps from row to row.
+is no named method: the second statement has the new vx. One step is a 5 × 5 matrix, for x, y, vx, vy
+and 1, and so are the steps from row to row.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
 _VERLET = "verlet"
 # half of the change of the velocities, the positions, the other half
 _LEAPFROG = "leapfrog"
-# v of both axes at once, and everything at once: methods that have a name, and no factor
+# v of both axes at once, and everything at once: named methods, tried here with a factor only
 _NAMED = {
     "v xy": "semi_implicit_euler",
     "xy v": "semi_implicit_euler_drift",

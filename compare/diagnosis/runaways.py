@@ -20,7 +20,7 @@ def falls(rows: FileRows, right: Program) -> str:
     displacements = rows.plane[1:] - rows.plane[0]
     for name, displacement in zip("xy", np.abs(displacements).T, strict=True):
         distance = float(displacement[-1])
-        if distance > 2 * right.length and _is_steady(times, displacement):
+        if distance > 2 * right.length and _grow_quadratically(times, displacement):
             fell = f"Its {name} falls by {distance:.3g} m in {times[-1]:.3g} s"
             pull = f"{2 * distance / times[-1] ** 2:.3g} m/s²"
             guess = f"perhaps {name} is its vertical, and its cord pulls too little"
@@ -28,7 +28,7 @@ def falls(rows: FileRows, right: Program) -> str:
     return ""
 
 
-def _is_steady(times: Array, distances: Array) -> bool:
+def _grow_quadratically(times: Array, distances: Array) -> bool:
     """Return whether distances grow like the square of the time."""
     middle = len(times) // 2
     if len(times) < 2 or not distances[middle - 1]:

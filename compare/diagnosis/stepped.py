@@ -283,8 +283,8 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
 
 
-def step_cause(steps: Steps | LinearSteps, size_m: float = 0.0) -> Deviation:
-    """Return the cause that a program takes some steps; they move its rows by `size_m`."""
+def step_cause(steps: Steps | LinearSteps, size_m: float = math.nan) -> Deviation:
+    """Return the cause that a program takes some steps; they move its rows by `size_m`, if that is known."""
     word, title = steps.title
     step_s = steps.step_s
     text = f"integrates with {title} at a step of {step_s:.3g} s"

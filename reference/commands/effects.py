@@ -19,8 +19,8 @@ from ..scenes.scene import Scene
 from ..solver.uncertain import decimal
 from ..sweeps.scene_swing import EstimatedSwing, first_swings, swing
 
-# what is estimated of each input
 _MOST_PLACES = 15  # after the point, of a range
+# what is estimated of each input
 _OF_AN_INPUT = ("moves_period_s", "moves_period_error_s", "share")
 
 
@@ -111,7 +111,7 @@ class Effects:
 
 
 def plus_minus(low: float, high: float) -> list[str]:
-    """Return the middle of a range, and half of its width to two digits, as text."""
+    """Return the middle of a range, and half of its width to two digits, or to the unit if that is less, as text."""
     middle = (low + high) / 2
     half_width = (high - low) / 2
     places = _places(half_width)

@@ -112,7 +112,7 @@ def _enough(passage: dict[str, Any]) -> str:
     too_little = {
         name: one["if_exact_half_width_s"]
         for name, one in enough["alone"].items()
-        if not one["width"]
+        if not one["width"] and float(one["if_exact_half_width_s"]) >= float(passage["wanted_s"])
     }
     if alone:
         text = f"By estimate, for {wanted} narrow {in_words(_with_units(alone))}"
@@ -120,8 +120,8 @@ def _enough(passage: dict[str, Any]) -> str:
         if too_little:
             text += f" Alone not enough, even if exact: {enumerated(_reached(too_little))}."
         return text
-    exact = ", ".join(_reached(too_little))
-    text = f"By estimate, no single input suffices for {wanted}, even if exact: {exact}."
+    text = f"By estimate, no single input suffices for {wanted}"
+    text += f", even if exact: {', '.join(_reached(too_little))}." if too_little else "."
     if enough["together"]:
         text += f" Together these suffice: {widths_in_words(enough['together'])}."
     return text

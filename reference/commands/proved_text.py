@@ -91,12 +91,10 @@ def _use(ranges: dict[str, Any]) -> str:
         "Use the estimates to decide what to measure. They add what each input alone changes, at both ends of its "
         "width: the worst case, in which all err in the worst direction at once."
     )
-    if ranges["over_s"] != ranges["asked_s"]:
-        text += (
-            f" They hold to the end of the run, although the proof ends at {ranges['over_s']} s."
-        )
     if "reason" in ranges:
         return text
+    if ranges["over_s"] != ranges["asked_s"]:
+        text += f" They do not depend on the proof, which ends at {ranges['over_s']} s."
     return (
         f"{text} Use the proved intervals if nobody may doubt the result. They are wider, because a proof loses more "
         "than the inputs change."
@@ -112,7 +110,7 @@ def _interval_lines(ranges: dict[str, Any]) -> Iterator[str]:
         if any(estimates):
             over = f"over {ranges['estimated_over_s']} s"
             columns.append(TextColumn(["estimate", over], estimates, is_number=False))
-        if any(intervals):
+        if "reason" not in ranges:
             over = f"over {ranges['over_s']} s"
             columns.append(TextColumn(["proved", over], intervals, is_number=False))
         yield from table(columns)
@@ -245,9 +243,9 @@ def _run_lines(ranges: dict[str, Any], narrowing: dict[str, Any]) -> Iterator[st
         text = f"To prove all {asked_s} s, narrow {widths_in_words(enough)}."
     else:
         reach = _rounded(narrowing["narrowest_holds_s"])
-        text = (
-            f"{NOT_EVEN} the proof ends at {reach}, before {asked_s} s. The estimates still hold."
-        )
+        text = f"{NOT_EVEN} the proof ends at {reach}, before {asked_s} s."
+        if _has_estimates(ranges):
+            text += " The estimates still hold."
     if float(ranges["over_s"]) > 0:
         text += (
             f" With the widths as they are, choose run.t_end = {ranges['over_s']}. "

@@ -92,7 +92,8 @@ def derived_facts(derived: dict[str, str], *, is_uncertain: bool = False) -> Ite
 
     Args:
         derived: the numbers, as text.
-        is_uncertain: whether inputs are. Then what is below all that they allow is left out.
+        is_uncertain: whether inputs are uncertain. Then the period of small swings has six digits, and a rest
+            position within a micrometre of the vertical is not shown.
     """
     if "axis_distance_m" in derived:
         yield "Earth's axis", f"{derived['axis_distance_m']} m away"

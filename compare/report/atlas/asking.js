@@ -32,7 +32,7 @@ let started = 0; // motions so far: of two the later one is shown
 let timer = null;
 let files = []; // that were judged last
 const changes = new Set(); // since then: names of CHANGED
-const largestError = { last: null, before: null }; // in m: of the last verdict, and of the last one with another error
+let largestError = null; // in m, of the last verdict
 
 // The form.
 
@@ -251,10 +251,10 @@ function showOutdated() {
 function comparedWithBefore({ path }) {
   if (!path) return [];
   const error = path.max_error_m;
-  if (error !== largestError.last) largestError.before = largestError.last;
-  largestError.last = error;
-  if (largestError.before === null) return [];
-  return [`The largest error is ${small(error)} m; in the verdict before it was ${small(largestError.before)} m.`];
+  const before = largestError;
+  largestError = error;
+  if (before === null || before === error) return [];
+  return [`The largest error is ${small(error)} m; in the verdict before it was ${small(before)} m.`];
 }
 
 function knownBy({ bound_m: bound }) {
@@ -281,10 +281,9 @@ function furtherSteps(result) {
   const { site } = sceneOf(pendulum.texts, fields);
   const { gravity } = result;
   const steps = [];
-  if (gravity && !gravity.helps) {
-    steps.push("The page finds nothing wrong with the clock, the unit and the axes, and the other meaning of g makes it no better. What remains are your equations, your numbers, your method and its step.");
-  } else if (!gravity?.isNamed) {
-    steps.push("The page finds nothing wrong with the clock, the unit and the axes. What remains are your equations, your numbers, your method and its step.");
+  if (!result.isNamed && !gravity?.isNamed) {
+    const other = gravity && !gravity.helps ? ", and the other meaning of g makes it no better" : "";
+    steps.push(`The page finds nothing wrong with the clock, the unit and the axes${other}. What remains are your equations, your numbers, your method and its step.`);
   }
   steps.push("Halve your step and judge again: what shrinks is the error of your method, what stays is in your equations.");
   if (gravity?.helps && !gravity.isNamed && site.gravity_is === "ellipsoid") {

@@ -163,7 +163,7 @@ function judge(given, truth, tolerance = null) {
   const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (swingsLess ? part : 1);
   const bound = boundOf(columns, truth);
   const allowed = allowance + bound;
-  const verdict = { tolerance_m: allowance, tolerance_of: toleranceOf(tolerance, swingsLess), bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, gravity: null, path: null, transits: null };
+  const verdict = { tolerance_m: allowance, tolerance_of: toleranceOf(tolerance, swingsLess), bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], explained: false, isNamed: false, gravity: null, path: null, transits: null };
   let until = Math.min(truth.t_end, times?.at(-1) ?? 0); // later transits are not missed
   if (columns) {
     const errors = errorsOf(columns, judged);
@@ -172,10 +172,9 @@ function judge(given, truth, tolerance = null) {
     const apart = columns.t.length - judged.rows.length;
     if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
     if (verdict.path.max_error_m > allowed) {
-      const { notes, explained, gravity = null } = mistakesIn(columns, judged, errors, truth, allowed);
+      const { notes, explained, isNamed = false, gravity = null } = mistakesIn(columns, judged, errors, truth, allowed);
       verdict.notes.push(...notes);
-      verdict.explained = explained;
-      verdict.gravity = gravity;
+      Object.assign(verdict, { explained, isNamed, gravity });
     }
   }
   if (times && truth.transits) {
@@ -198,8 +197,8 @@ function toleranceOf(tolerance, swingsLess) {
   return swingsLess ? "rows" : "amplitude";
 }
 
-// What explains the error, the plainest first: {notes, explained, gravity}, with what was found of the other meaning of g
-// if it was tried.
+// What explains the error, the plainest first: {notes, explained, isNamed, gravity}: whether nothing is left of it, whether
+// a clock or a map of columns is named, and what was found of the other meaning of g if it was tried.
 function mistakesIn(columns, judged, errors, truth, allowed) {
   const plain = suspicions(columns, judged, errors, truth, allowed);
   if (plain.length) return { notes: plain, explained: true };

@@ -1,5 +1,5 @@
-// How far the bob of a pendulum is off if its equations leave something out. Each such model is integrated by the steps of
-// Runge and Kutta, and so are the full equations: the errors of the steps cancel. Needs integrating.js.
+// How far the bob of a pendulum is off if its equations leave something out. Each such model is integrated by the
+// classical Runge-Kutta method, and so are the full equations: most errors of the steps cancel. Needs integrating.js.
 "use strict";
 
 const STEPS_A_SWING = 50;
@@ -27,7 +27,7 @@ function stepBy(rates, state, step) {
 }
 
 // The largest distance in m, seen from above, of each model from the full equations, by its name: {until in s, sizes}; null
-// if the swing is wide.
+// if the swing is wide, or there is no gravity.
 function leftOut(scene, wide, lastTime) {
   const { length, unit, swing, start, velocity, constants } = problemOf(scene);
   if (wide || !swing) return null;

@@ -275,14 +275,14 @@ function observed(columns, judged, truth, allowed) {
   const maps = observation(found, truth);
   if (maps) {
     const text = `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest, allowed)}`;
-    return { notes: [...rounded, text], explained: true };
+    return { notes: [...rounded, text], explained: maps.rest <= allowed, isNamed: true };
   }
   const gravity = gravityTrial(found, truth);
   const clock = clockRate(found, truth);
   if (clock && isLikelier(clock, gravity, found)) {
     const alike = "A step error may look alike: the command tells more.";
     const text = `Perhaps your program ${clock.text}: ${correctedTo(clock.rest, allowed)} ${alike}`;
-    return { notes: [...rounded, text], explained: true };
+    return { notes: [...rounded, text], explained: clock.rest <= allowed, isNamed: true };
   }
   const notes = gravity?.isNamed ? [...rounded, gravity.text, gravity.advice] : rounded;
   return { notes, explained: Boolean(gravity?.isNamed && gravity.explains), gravity };

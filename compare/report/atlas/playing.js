@@ -50,6 +50,7 @@ function playerOf(element, load) {
     if (motion) return true;
     output.textContent = "Computing the motion …";
     const loaded = await load();
+    output.textContent = "";
     if (loaded) show(loaded);
     return Boolean(loaded);
   }

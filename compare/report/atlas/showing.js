@@ -70,7 +70,7 @@ const DECIDES = {
 };
 
 const decidedBy = ({ tolerance_m: tolerance, tolerance_of: of }) =>
-  `It agrees if it is within ${small(tolerance)} m of the right motion everywhere: ${DECIDES[of]}`;
+  `It agrees if no position is off by more than ${small(tolerance)} m, beside the error of the reference: ${DECIDES[of]}`;
 
 function showRefusal(shown, reason) {
   shown.className = "refused";

@@ -118,7 +118,11 @@ function solve(scene, words, report = () => {}) {
   const tilt = tiltOf(constants);
   const until = knownUntil(error, end, words.TOLERANCE * amplitude);
   const transits = until < end ? null : transitsOf(first, second, omega);
-  let other = null;
+  let other;
+  const otherGravity = () => {
+    if (other === undefined) other = withOtherGravity(scene); // null if it cannot be solved
+    return other;
+  };
   return {
     scene,
     steps: first.steps,
@@ -151,7 +155,7 @@ function solve(scene, words, report = () => {}) {
       end,
       bound_m: error(end),
       axis_m: axisDistanceOf(scene),
-      otherGravity: () => (other ??= withOtherGravity(scene)),
+      otherGravity,
       words,
     },
   };
@@ -165,7 +169,8 @@ function csvOf({ at, scene }, step) {
   return `${names.join(",")}\n${lines.join("\n")}\n`;
 }
 
-// The verdict on files by a motion, and what terms of the equations matter where an error is left to explain. One that is not known more closely than the tolerance judges nothing.
+// The verdict on files by a motion; if an error stays unexplained, also how much each term of the equations matters. A
+// motion whose own error exceeds the tolerance judges nothing.
 function answerBy({ scene, truth, facts }, files, tolerance) {
   const result = answer(files, tolerance, truth);
   if (result.refused) return result;

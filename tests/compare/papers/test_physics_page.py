@@ -86,7 +86,9 @@ NUMBERS = {
     "share": lambda: f"{fixed(100 * OUTWARD / P.gravity, 3)} % of gravity",
     "turn": lambda: f"clockwise by {fixed(degrees(REAL_TURN) * 3600, 3)}° an hour",
     "full turn": lambda: f"a full turn in {fixed(2 * pi / REAL_TURN / 3600, 1)} hours",
-    "turn of the model": lambda: f"as the paper states it by {fixed(degrees(TURN) * 3600, 3)}°",
+    "turn of the model": lambda: (
+        f"In the paper's model it turns by {fixed(degrees(TURN) * 3600, 3)}°"
+    ),
     "ellipse": lambda: (
         f"half-axes of {fixed(half_axes()[0], 3)} m and {fixed(1000 * half_axes()[1], 3)} mm"
     ),

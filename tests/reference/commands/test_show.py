@@ -191,7 +191,7 @@ def test_people_are_told_how_far_the_ranges_go_and_which_run_is_proved(too_long)
     ranges = too_long["ranges"]
     assert f"proved to {ranges['over_s']} s only" in ranges_title(ranges)
     told = text_of(ranges)
-    assert f"hold to the end of the run, although the proof ends at {ranges['over_s']} s" in told
+    assert f"do not depend on the proof, which ends at {ranges['over_s']} s" in told
     assert "too uncertain for a proof over all 120 s" in told
     assert "To prove all 120 s, narrow release.angle to " in told
     assert f"With the widths as they are, choose run.t_end = {ranges['over_s']}." in told
