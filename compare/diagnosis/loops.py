@@ -17,7 +17,7 @@ from reference.numbers.precision import Array
 
 from ..observed.least_squares import by_differences, gauss_newton
 from .case import FileCase
-from .phasors import METHODS, Phasors, fit_phasors
+from .phasors import TITLES, Phasors, fit_phasors
 from .programs import SphericalPendulum, phasors_of
 from .thresholds import NEEDED
 
@@ -49,7 +49,6 @@ _TITLES = {
     "ve": ("leapfrog", f"velocity Verlet, {_EXPLICIT}"),
     "le": ("leapfrog", f"leapfrog, {_EXPLICIT}"),
 }
-_METHODS = {method.id: method.title for method in METHODS}
 _FINEST = 1e-4  # ωh: the shortest step that is tried
 _TRIED = 10  # numbers of steps that are tried at a time
 _NEWTON = 8  # Gauss-Newton steps of a fit
@@ -73,13 +72,13 @@ def _step_matrix(order: str, theta: Array, h: float) -> Array:
             [0.0, theta[5], -2 * theta[2], damping, theta[4] * length],
         ]
     )
-    matrix = _undamped_matrix(order.removesuffix(" factor"), accelerations, h)
+    matrix = _matrix_without_factor(order.removesuffix(" factor"), accelerations, h)
     if "factor" in order:
         matrix[2:4] *= 1 - drag * h
     return matrix
 
 
-def _undamped_matrix(order: str, accelerations: Array, h: float) -> Array:
+def _matrix_without_factor(order: str, accelerations: Array, h: float) -> Array:
     """Return one step without a factor; `accelerations` are the rates of vx and vy, (2, 5)."""
     if order == _VERLET:
         return _verlet(accelerations, h)
@@ -148,7 +147,7 @@ class LinearSteps(SphericalPendulum):
         """The word of its method, and the name that people use."""
         order = self.method.removesuffix(" factor")
         if order in _NAMED:
-            return _NAMED[order], _METHODS[_NAMED[order]]
+            return _NAMED[order], TITLES[_NAMED[order]]
         return _TITLES[order[:2]]
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:

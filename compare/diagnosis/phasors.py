@@ -385,3 +385,4 @@ METHODS = (
     FixedStepMethod("rk3", "a Runge-Kutta method of order 3", _taylor(3)),
     FixedStepMethod("rk4", "a Runge-Kutta method of order 4", _taylor(4)),
 )
+TITLES = {method.id: method.title for method in METHODS}

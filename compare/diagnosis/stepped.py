@@ -30,13 +30,12 @@ from .families import fit_pendulum
 from .fitted import polished, readings_of
 from .hypotheses import Claim, Hypothesis
 from .loops import LinearSteps, likely_loops
-from .phasors import METHODS
+from .phasors import TITLES
 from .programs import Program, SphericalPendulum
 from .readings import CauseReading
 from .thresholds import NEEDED
 
-_TITLES = {method.id: method.title for method in METHODS}
-_TITLES["heun"] = _TITLES["rk2"]
+_TITLES = TITLES | {"heun": TITLES["rk2"]}
 # ωh: the shortest step that is tried
 _FINEST = {
     "semi_implicit_euler": 0.004,

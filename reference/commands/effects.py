@@ -128,7 +128,7 @@ def _places(half_width: float) -> int:
 
 
 def rounded_down(number: float, digits: int) -> str:
-    """Return a number above 0 as a decimal with so many digits, at most as large."""
+    """Return a positive number as a decimal of some digits, rounded down."""
     exact = Decimal(number)
     last_place = exact.adjusted() - digits + 1
     floor = exact.quantize(Decimal(1).scaleb(last_place), ROUND_FLOOR)

@@ -69,7 +69,7 @@ class _Proved(NamedTuple):
     Attributes:
         holds_s: up to which time it holds.
         half_width_s: half of the width of the interval of a passage; infinite if there is none.
-        reason: why there is none; "" if there is one, or no passage is sought.
+        reason: why that interval is missing; "" if it is not, or if no passage was asked for.
     """
 
     holds_s: float
@@ -269,7 +269,7 @@ def ends_before(holds_s: float) -> str:
 
 
 def _with_a_share(widths: Widths, passage: Mapping[str, Any]) -> dict[str, str]:
-    """Return the widths of the inputs that move a passage by estimate; none if all do, or none is known to."""
+    """Return the widths of the inputs that move a passage by estimate; empty if all do, or if that is not known."""
     limits = passage.get("limits", {})
     fewer = {
         name: width

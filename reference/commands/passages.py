@@ -80,7 +80,7 @@ def passage_interval(ranges: Ranges, word: str, number: int) -> Ends | str:
         return "an earlier one is not decided, so that its number is open"
     if number > len(times):
         reach = f"{float(ranges.scene.run.t_end):.4g} s"
-        decided = f"only the first {len(times)} are" if times else "none is"
+        decided = f"only the first {len(times)} are" if times else "no passage is"
         if zeros.possible:
             return f"{decided} decided, though the motion is proved up to {reach}"
         return f"{decided} sure to come in the {reach} that are proved"

@@ -103,8 +103,8 @@ class Laboratory:
     def _measured_explanation(self, explanations: Sequence[Explanation]) -> Explanation:
         """Return the explanation that is left, in the conventions of the first file.
 
-        If several are left, it names no cause. If none is left, the certain causes of the first
-        file become what the program moves like.
+        Several explanations that remain name no cause together. If no explanation remains, the
+        certain causes of the first file become what the program moves like.
         """
         first = self._explanation
         ids: set[str] = set().union(*map(_ids, explanations))

@@ -21,22 +21,10 @@ CLAIMS = "claims.js"
 _EMITTED = {EMITTED: emitted, CLAIMS: emitted_claims}
 _EVALUATOR = "function.mjs"
 # what the two workers are made of: of a scene's golden data, and of the motion that a page computes
-_JUDGING = (
-    "function.mjs",
-    "reading.js",
-    "judging.js",
-    CLAIMS,
-    "observing.js",
-    "gravity.js",
-    "answering.js",
-)
+_BOTH = ("reading.js", "judging.js", CLAIMS, "observing.js", "gravity.js", "answering.js")
+_JUDGING = ("function.mjs", *_BOTH)
 _SOLVING = (
-    "reading.js",
-    "judging.js",
-    CLAIMS,
-    "observing.js",
-    "gravity.js",
-    "answering.js",
+    *_BOTH,
     EMITTED,
     "integrating.js",
     "leaving.js",
