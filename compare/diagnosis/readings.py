@@ -142,9 +142,6 @@ class Reader:
 
         value = reading.value(cause)
         same = SAME * abs(value)
-        if cause.free == "rate" and abs(value + self.right.rate) <= same:
-            sign = next(other for other in causes if other.id == "coriolis_sign")
-            return with_other(sign, sign.change(reading.program.changed(rate=self.right.rate)))
         for other in causes:
             if other.free or other.group != cause.group:
                 continue
@@ -173,6 +170,10 @@ class Reader:
         fitted, _ = adjusted(
             program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint
         )
+        # an Earth that turns the other way is a Coriolis force of the wrong sign, which has a name:
+        # the centrifugal force is the same
+        if fitted.rate * self.right.rate < 0:
+            return None
         return self._judged(together, fitted)
 
     def _with_first_step(

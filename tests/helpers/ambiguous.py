@@ -73,6 +73,7 @@ MISTAKES = (  # what is told the program after its placeholders, what is true of
     ({"half": "0.5", "ltimes": "1.001"}, "coriolis_half pendulum.length", 3),
     ({"rate": "7.2722052166430e-5", "gtimes": "1.0005"}, "solar_day site.gravity", 0),
     ({"lat": "48", "fast": "1.0003"}, "site.latitude clock", 0),
+    ({"model": "1", "reading": "1", "half": "-1"}, "linear_g no_centrifugal coriolis_sign", 3),
 )  # fmt: skip
 
 
