@@ -7,7 +7,7 @@ They follow from motions with each input at both ends of its width, as those of 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..scenes.scene import Scene
 from .effects import Effect, Effects, Estimate, at_ends, limits_document, rounded_down
@@ -22,7 +22,21 @@ _DIGITS = 2  # of a width that suffices
 _TRIES = 5  # of widths: effects are nearly in proportion to them
 
 _Passage = tuple[str, int]  # section and number
-_Times = dict[_Passage, Estimate | str]
+
+
+class _Missing(NamedTuple):
+    """Why the time of a passage is missing.
+
+    Attributes:
+        reason: for people.
+        is_absent: whether the motion has no such passage; False where it could not be solved.
+    """
+
+    reason: str
+    is_absent: bool
+
+
+_Times = dict[_Passage, Estimate | _Missing]
 
 
 class PassageEstimates:
@@ -58,8 +72,10 @@ class PassageEstimates:
         """
         passage = (word, asked.number)
         own = self._own[passage]
-        if isinstance(own, str):
-            return {"reason": f"none: {own}"}
+        if isinstance(own, _Missing):
+            if own.is_absent:
+                return {"reason": f"none: {own.reason}"}
+            return {"no_estimate": own.reason}
         document: dict[str, Any] = {"estimate_s": own.value, "estimate_error_s": own.error}
         effects = self._effects(passage, own)
         if isinstance(effects, str):
@@ -89,8 +105,8 @@ class PassageEstimates:
         numbers = []
         for times in self._at_ends[name, width]:
             number = times[passage]
-            if isinstance(number, str):
-                return number
+            if isinstance(number, _Missing):
+                return number.reason
             numbers.append(number)
         return Effect.of(own, numbers)
 
@@ -100,9 +116,10 @@ class PassageEstimates:
         for found in computed_passages(scene, self._asked, self._longest_s, digits):
             word = found["section"]
             if "number" not in found:
-                times |= {(word, one.number): found["reason"] for one in self._asked}
+                unsolved = _Missing(found["reason"], is_absent=False)
+                times |= {(word, one.number): unsolved for one in self._asked}
             elif "reason" in found:
-                times[word, found["number"]] = found["reason"]
+                times[word, found["number"]] = _Missing(found["reason"], is_absent=True)
             else:
                 times[word, found["number"]] = Estimate(found["t_s"], found["t_error_s"])
         return times

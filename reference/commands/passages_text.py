@@ -30,10 +30,12 @@ def _about(ranges: dict[str, Any], passage: dict[str, Any]) -> Iterator[str]:
         yield f"estimate {interval(passage['estimate_range_s'], 's')} ({middle})"
     elif "estimate_s" in passage:
         yield f"estimate near {passage['estimate_s']:.6g} s; {passage['no_estimate_range']}"
+    elif "no_estimate" in passage:
+        yield f"no estimate: {passage['no_estimate']}"
     if "t_s" in passage:
         useless = "useless, wider than half a swing: " if passage["useless"] else ""
         yield f"proved {useless}{interval(passage['t_s'], 's')}"
-    elif "estimate_s" in passage:
+    elif "estimate_s" in passage or "no_estimate" in passage:
         yield f"not proved: {passage['reason']}{gate_hint(ranges, passage['section'])}"
     else:
         yield passage["reason"]

@@ -10,6 +10,7 @@ import pytest
 import reference
 from reference.commands.estimated_passages import PassageEstimates
 from reference.commands.passages import Asked
+from reference.commands.passages_text import passage_lines
 from reference.scenes.scene import parse_scene
 
 NUMBER = 50
@@ -157,3 +158,15 @@ def test_a_passage_that_may_come_after_the_end_of_the_run_has_its_range():
         document[t_end] = estimates_of(ending).document(GATE, Asked(NUMBER))
     assert document["174.2"]["estimate_range_s"] == ["174.129", "174.248"]
     assert document["174.1"] == {"reason": "none: the run has 49"}
+
+
+def test_a_motion_that_cannot_be_solved_says_nothing_of_its_passages():
+    """That there is no estimate is not that there is no passage."""
+    stiff = parse_scene(MUSEUM).with_values({"pendulum.drag": "1e9"})
+    document = estimates_of(stiff).document(GATE, Asked(NUMBER))
+    assert set(document) == {"no_estimate"}
+    assert document["no_estimate"].startswith("Stiff: ")
+    passage = {"section": GATE, "number": NUMBER, "reason": "nothing is proved", **document}
+    text = "\n".join(passage_lines({"passages": [passage]}))
+    assert "no estimate: Stiff: " in text
+    assert "not proved: nothing is proved" in text
