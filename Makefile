@@ -107,8 +107,9 @@ locale:
 	@touch $@
 
 .venv-peers/ready: requirements-peers.lock pyproject.toml | locale
-	@command -v gfortran >/dev/null && command -v cmake >/dev/null && command -v g++ >/dev/null || { echo "numbalsoda and \
-	  the native methods are compiled. On Debian and Ubuntu: apt install gfortran g++ cmake libgsl-dev libsundials-dev" >&2; exit 2; }
+	@command -v gfortran >/dev/null && command -v cmake >/dev/null && command -v g++ >/dev/null \
+	  || { echo "numbalsoda and the native methods are compiled." \
+	  "On Debian and Ubuntu: apt install gfortran g++ cmake libgsl-dev libsundials-dev" >&2; exit 2; }
 	@echo "Downloading and installing $(call packages,requirements-peers.lock) packages into .venv-peers"
 	@$(PYTHON) -m venv --clear .venv-peers
 	@$(subst .venv,.venv-peers,$(LOCKED)) requirements-peers.lock
