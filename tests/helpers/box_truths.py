@@ -388,6 +388,19 @@ def wrong_boxes_are_refused(module):
         module.Windows.finish(windows)
 
 
+def bounds_of_the_motion_hold(module):
+    """(4.5) to (4.7) in the scene's time, in which a pendulum under less gravity moves faster; γ₀ is the scene's own."""
+    fast = {"x": "0", "y": "0", "vx": "3", "length": "1", "gravity": "10", "rotation_rate": "0"}
+    hanging = scene(drag="0.25", **fast)
+    balls = module.BoxBalls(widened(hanging, {"gravity": "0.2", "drag": "0.25"}), BITS)
+    slowest = np.sqrt(0.98)  # pace: the square root of the gravity over the scene's
+    speed = 3 / slowest
+    assert speed <= float(balls.S) == pytest.approx(speed, rel=1e-3)
+    assert speed**2 / 2 <= float(balls.lambda_minus) == pytest.approx(speed**2 / 2, rel=1e-3)
+    assert float(balls.lambda_plus) == pytest.approx(0, abs=1e-9)
+    assert float(balls.drag_0) == 0.25
+
+
 def own_times_hold(module):
     """Zeros that may come up to the end, in each pendulum's own time: the first ones, or it is refused."""
     windows = SimpleNamespace(balls=SimpleNamespace(pace=arb(2)), times=[Fraction(0), Fraction(5)])
@@ -409,6 +422,7 @@ def own_times_hold(module):
 
 
 def all_hold(module, long):
+    bounds_of_the_motion_hold(module)
     own_times_hold(module)
     plumb_lines_hold(module)
     spheres_hold(module)
