@@ -151,8 +151,8 @@ PUBLIC = {
     "in_words usable",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
-    "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero "
-    "turn_and_pull",
+    "reference.model.constants": "Constants Vector axis_distance centrifugal_products constants constants_in_double "
+    "is_zero turn_and_pull",
     "reference.model.force": "acceleration energy force invariant rates tension",
     "reference.model.formulations": "FORMULATIONS",
     "reference.model.sections": "form_of",

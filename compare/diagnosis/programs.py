@@ -17,7 +17,7 @@ import numpy as np
 
 from reference import FoucaultError
 from reference.engines.trajectory import Variants
-from reference.model.constants import Constants
+from reference.model.constants import Constants, centrifugal_products
 from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
@@ -166,7 +166,7 @@ class Program:
         phi = math.radians(self.latitude)
         north = self.rate * math.cos(phi)
         up = self.rate * math.sin(phi)
-        return self.rate**2, up * up, -north * up, north * north
+        return centrifugal_products(self.rate, north, up)
 
     def _exact(self) -> Array:
         """Return theta of an exact integration of the equations."""

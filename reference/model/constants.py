@@ -127,16 +127,12 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
     except ZeroDivisionError:  # at the pole of an Earth as flat as a disc
         raise BeyondDoublesError from None
     north, up, pull_north, pull_up = turn_and_pull(length, gravity, rate, distance, sin, cos)
+    xx, yy, yz, zz = centrifugal_products(rate, north, up)
     return Constants(
         length=length,
         turn=(0, number(north), number(up)),
         pull=(0, number(pull_north), number(pull_up)),
-        centrifugal=(
-            number(rate * rate),
-            number(up * up),
-            number(-north * up),
-            number(north * north),
-        ),
+        centrifugal=(number(xx), number(yy), number(yz), number(zz)),
         drag=number(to_mpf(inputs.drag, ctx)),
         gravity=number(gravity / length),
         axis_distance=number(distance / length),
@@ -158,3 +154,11 @@ def turn_and_pull(
     """Return what of Ω and of c points north and up, in any number type; `distance` is R."""
     outward = rate * rate * distance
     return rate * cos, rate * sin, -outward * sin / length, (outward * cos - gravity) / length
+
+
+def centrifugal_products(rate: Any, north: Any, up: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the entries xx, yy, yz, zz of |Ω|² - Ω Ωᵀ for Ω = (0, north, up), in any number type.
+
+    `rate` is |Ω|, of either sign.
+    """
+    return rate * rate, up * up, -north * up, north * north

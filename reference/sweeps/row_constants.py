@@ -14,7 +14,7 @@ import numpy as np
 
 from ..engines.batch_interface import XDOT, Rows
 from ..model.algebra import add, cross, dot, scale, subtract
-from ..model.constants import Constants, Vector, axis_distance, turn_and_pull
+from ..model.constants import Constants, Vector, axis_distance, centrifugal_products, turn_and_pull
 from ..model.force import acceleration, force, tension
 from ..model.sections import form_along
 from ..model.start import Angle, at_angles
@@ -153,7 +153,7 @@ def _constants(columns: Columns, gravity_is: GravityIs) -> Constants:
     return Constants(
         turn=(0, north, up),
         pull=(0, pull_north, pull_up),
-        centrifugal=(rate * rate, up * up, -(north * up), north * north),
+        centrifugal=centrifugal_products(rate, north, up),
         drag=columns["drag"],
         rate=rate,
     )

@@ -14,7 +14,7 @@ from functools import cache
 from typing import Any
 
 from reference.model.algebra import plus, product
-from reference.model.constants import Constants, axis_distance, turn_and_pull
+from reference.model.constants import Constants, axis_distance, centrifugal_products, turn_and_pull
 from reference.model.force import force
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Angle, at_angles
@@ -56,6 +56,7 @@ def emitted() -> str:
         ),
         _function("releaseAtAngles", _released, _RELEASE),
         _function("momentumOf", _momentum, ("nx", "ny", "nz", "vx", "vy", "vz", *_CONSTANTS[:2])),
+        _function("centrifugalProducts", _centrifugal, ("rate", *_CONSTANTS[:2])),
         _function("forceOn", _force, _FORCE),
         _function("tangentialForce", _tangential, ("sin", "cos", *_CONSTANTS)),
     ]
@@ -107,6 +108,10 @@ def _momentum(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     return _MOMENTUM.start(tuple(n), tuple(v), Constants(turn=(0, *turn)), functions)[3:]
 
 
+def _centrifugal(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
+    return centrifugal_products(*numbers)
+
+
 def _force(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     """Return the force on a bob, with the terms of the centrifugal force given one by one."""
     *turn_and_pull_, drag = numbers[6:11]
@@ -121,7 +126,8 @@ def _tangential(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
     k = Constants(
         turn=(0, turn_north, turn_up),
         pull=(0, pull_north, pull_up),
-        centrifugal=(0, turn_up * turn_up, -1 * turn_north * turn_up, turn_north * turn_north),
+        # the only product of the rate is xx, which drops out: the bob at rest has x = 0
+        centrifugal=centrifugal_products(0, turn_north, turn_up),
     )
     at_rest = force((0, sin, -1 * cos), (0, 0, 0), k)
     return (plus(product(at_rest[1], cos), product(at_rest[2], sin)),)

@@ -1,5 +1,6 @@
 // How far the bob of a pendulum is off if its equations leave something out. Each such model is integrated by the
-// classical Runge-Kutta method, and so are the full equations: most errors of the steps cancel. Needs integrating.js.
+// classical Runge-Kutta method, and so are the full equations: most errors of the steps cancel. Needs integrating.js and
+// the functions of emitted.py.
 "use strict";
 
 const STEPS_A_SWING = 50;
@@ -37,7 +38,7 @@ function leftOut(scene, wide, lastTime) {
   const end = until / unit;
 
   const [turnNorth, turnUp, pullNorth, pullUp, drag = 0] = constants;
-  const centrifugal = [turnNorth ** 2 + turnUp ** 2, turnUp ** 2, -turnNorth * turnUp, turnNorth ** 2];
+  const centrifugal = centrifugalProducts(Math.hypot(turnNorth, turnUp), turnNorth, turnUp);
   const full = { turnNorth, turnUp, pull: [pullNorth, pullUp], drag, centrifugal };
   const models = {
     sphere: { ...full, tension: -pullUp },

@@ -1,10 +1,13 @@
-"""Five numbers of the Paris pendulum that a pocket calculator gives."""
+"""Five numbers of the Paris pendulum that a pocket calculator gives, and a centrifugal force in whole numbers."""
 
 import math
 
 import pytest
 
 from reference import load_scene
+from reference.model.algebra import cross, scale
+from reference.model.constants import Constants, centrifugal_products
+from reference.model.force import force
 from reference.model.start import Start
 
 SIN = math.sin(math.radians(48.846111))
@@ -28,3 +31,14 @@ def test_paris_by_a_pocket_calculator():
     assert float(start.rest[1]) * length == pytest.approx(-0.1152, abs=1e-4)
     # the plane turns by Ω sin φ = 11.33 degrees an hour
     assert math.degrees(7.292115e-5 * SIN) * 3600 == pytest.approx(11.325, abs=1e-3)
+
+
+def test_the_centrifugal_force_in_whole_numbers():
+    """|Ω|² - Ω Ωᵀ of Ω = (0, 3, 4), whose size is 5; as a force it is -Ω × (Ω × n)."""
+    products = centrifugal_products(5, 3, 4)
+    assert products == (25, 16, -12, 9)
+
+    n = (2, 7, -1)
+    turn = (0, 3, 4)
+    at_rest = force(n, (0, 0, 0), Constants(centrifugal=products))
+    assert at_rest == scale(-1, cross(turn, cross(turn, n))) == (50, 124, -93)

@@ -205,7 +205,9 @@ def test_constants_and_release_are_those_of_the_model():
         """(texts) => {
           const scene = sceneOf(texts, fields);
           const problem = problemOf(scene);
-          return { constants: constantsOf(scene), release: releaseOf(scene), zeros: zeroAtRelease(problem) };
+          const [turnNorth, turnUp] = constantsOf(scene);
+          const products = centrifugalProducts(scene.site.rotation_rate, turnNorth, turnUp);
+          return { constants: constantsOf(scene), products, release: releaseOf(scene), zeros: zeroAtRelease(problem) };
         }""",
         cases,
     )
@@ -219,6 +221,8 @@ def test_constants_and_release_are_those_of_the_model():
         for value, exact in zip(mine["constants"][2:], known[2:], strict=True):
             assert value == pytest.approx(exact, rel=2e-15, abs=4e-16 * size), texts
             assert (value == 0) == (exact == 0) or abs(exact) < 1e-16 * size, texts
+        products = [float(value) for value in k.centrifugal]
+        assert mine["products"] == pytest.approx(products, rel=4e-15, abs=4e-16 * products[0])
         start = Start.of(scene.exact, 53 + GUARD_BITS)
         released = [float(value) for value in (*start.position, *start.velocity)]
         length, speed = float(k.length), math.hypot(*released[3:])
