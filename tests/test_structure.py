@@ -165,7 +165,7 @@ PUBLIC = {
     "reference.numbers.zeros": "XDOT",
     "reference.plain_text": "finite plain plain_json plain_lines shortened",
     "reference.scenes.fields": "LEVELS RunTable",
-    "reference.scenes.inputs": "GravityIs Inputs",
+    "reference.scenes.inputs": "GRAVITY_MEANINGS GravityIs Inputs",
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene field_names unit_of",
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",
     "reference.solver.choice": "need_heyoka",

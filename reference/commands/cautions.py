@@ -11,7 +11,7 @@ import typer
 from ..errors import UnreachableError
 from ..model.normal_gravity import is_on_earth, normal_gravity
 from ..model.start import Start
-from ..scenes.inputs import azimuth_of
+from ..scenes.inputs import GRAVITY_MEANINGS, azimuth_of
 from ..scenes.scene import Scene
 from ..scenes.shipped import scene_ids
 from ..solver.swing import creeps_in_words
@@ -45,8 +45,8 @@ def cautions(scene: Scene, word: str, varied: tuple[str, ...] = ()) -> list[str]
     is_own = word not in scene_ids()
     if is_own and scene.site.gravity_is == "ellipsoid" and "site.gravity_is" not in varied:
         text = (
-            'site.gravity_is is "ellipsoid": gravity alone, to which the centrifugal force is added. '
-            'A gravimeter or a table of g gives "effective", which contains it.'
+            f'site.gravity_is is "ellipsoid": {GRAVITY_MEANINGS["ellipsoid"]}. '
+            f'A gravimeter or a table of g gives "effective": {GRAVITY_MEANINGS["effective"]}.'
         )
         if is_on_earth(scene.exact):
             normal = f"{normal_gravity(float(scene.site.latitude)):.5f}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import log
 
+from ..scenes.inputs import GRAVITY_MEANINGS
 from ..scenes.scene import Scene, unit_of
 from .layout import Fact, enumerated
 from .progress import duration_in_words
@@ -13,10 +14,6 @@ from .progress import duration_in_words
 _READINGS = {
     "decimal": "decimal: each number is exact as written",
     "binary64": "binary64: each number is the double nearest to it",
-}
-_GRAVITY = {
-    "ellipsoid": "gravity alone (ellipsoid): the centrifugal force is added",
-    "effective": "as measured along the plumb line (effective)",
 }
 # inputs that are named if they have no width; those of the release come to them
 _MEASURED = ("pendulum.length", "pendulum.drag", "site.latitude", "site.gravity")
@@ -65,7 +62,7 @@ def input_facts(
     yield "cord", _cord(scene)
     yield "site", _site(scene)
     site = scene.site
-    yield "gravity", f"{site.gravity} m/s², {_GRAVITY[site.gravity_is]}"
+    yield "gravity", f"{site.gravity} m/s², {GRAVITY_MEANINGS[site.gravity_is]} ({site.gravity_is})"
     yield "Earth", _earth(scene)
     yield "release", _release(scene)
     yield "run", _run(scene)

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from .inputs import GravityIs, azimuth_of
+from .inputs import GRAVITY_MEANINGS, GravityIs, azimuth_of
 from .texts import OR_INF, NotNegative, Number, Positive, Refused, checked, within
 
 _MAX_DIGITS = 1000
@@ -97,7 +97,7 @@ class Site(SceneTable):
     gravity_is: GravityIs = field(
         "ellipsoid",
         "",
-        "ellipsoid: gravity alone, to which the centrifugal force is added; effective: as measured, which contains it",
+        "; ".join(f"{word}: {meaning}" for word, meaning in GRAVITY_MEANINGS.items()),
     )
     rotation_rate: Number = field("7.292115e-5", "rad/s", "rate at which the Earth turns")
     equatorial_radius: NotNegative = field("6378137", "m", "radius of the ellipsoid at the equator")

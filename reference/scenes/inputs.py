@@ -7,6 +7,11 @@ from fractions import Fraction
 from typing import Literal
 
 GravityIs = Literal["ellipsoid", "effective"]
+# what each says of g: in the schema and the template, and wherever a user reads or chooses it
+GRAVITY_MEANINGS: dict[GravityIs, str] = {
+    "ellipsoid": "gravity alone, to which the centrifugal force is added",
+    "effective": "as measured along the plumb line, with the centrifugal force included",
+}
 
 # of a grid step: times nearer than this differ only by the rounding of the inputs
 _SAME_TIME = Fraction(1, 1 << 30)

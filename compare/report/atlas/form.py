@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple, get_args
 
 from reference import Scene, load_scene, scene_ids
-from reference.scenes.inputs import GravityIs
+from reference.scenes.inputs import GRAVITY_MEANINGS, GravityIs
 from reference.scenes.scene import MAX_ROWS, field_names, unit_of
 from reference.solver.swing import FAST, LEAN, NO_SWING, ONE_SIDE, SMALL, UNDECIDED, left_out
 
@@ -27,11 +27,10 @@ _LABELS = {
     "run.t_end": "end",
     "run.grid_step": "step of rows",
 }
-# what one has to have for each meaning of g
-_MEANINGS_OF_G = {
-    "ellipsoid": "your g is gravitation alone, as from G M/r², and the centrifugal force comes on top.",
-    "effective": "your g is measured, from a book (9.81), or from a table or formula for your latitude: "
-    "it contains the centrifugal force.",
+# where a visitor has a g of each meaning from
+_SOURCES_OF_G: dict[GravityIs, str] = {
+    "ellipsoid": "G M/r²",
+    "effective": "a gravimeter, a book (9.81), or a table or formula for your latitude",
 }
 _INFINITE = "site.inverse_flattening"  # may be "inf"
 
@@ -164,7 +163,7 @@ def _input(field: Mapping[str, Any]) -> Html:
     )
 
 
-def _choice(name: str, choices: Iterable[str]) -> Html:
+def _choice(name: str, choices: Iterable[GravityIs]) -> Html:
     """Return radio buttons for the meanings of g."""
     buttons = "".join(_button(name, choice) for choice in choices)
     return Html(
@@ -172,10 +171,11 @@ def _choice(name: str, choices: Iterable[str]) -> Html:
     )
 
 
-def _button(name: str, choice: str) -> str:
+def _button(name: str, choice: GravityIs) -> str:
+    meaning = f"{GRAVITY_MEANINGS[choice]}. Such a g comes from {_SOURCES_OF_G[choice]}."
     return (
         f'<label><input type="radio" name="{name}" value="{text(choice)}"> '
-        f"<span><b>{text(choice)}</b>: {text(_MEANINGS_OF_G[choice])}</span></label>\n"
+        f"<span><b>{text(choice)}</b>: {text(meaning)}</span></label>\n"
     )
 
 

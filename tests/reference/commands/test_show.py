@@ -14,6 +14,7 @@ import reference
 from foucault import commands
 from reference.commands.proved_text import ranges_lines, ranges_title
 from reference.commands.scene_text import input_facts
+from reference.scenes.inputs import GRAVITY_MEANINGS
 from reference.scenes.shipped import scene_ids
 
 WIDEST = 80
@@ -350,6 +351,8 @@ def test_the_g_of_somebodys_own_scene_is_warned_of_and_that_of_a_shipped_one_is_
     own.write_text('[release]\nx = "1"\ny = "0"\n[run]\nt_end = "20"\n')
     status, _, err = foucault("show", own)
     assert status == 0 and "site.gravity_is" in err and "effective" in err
+    warning = lines.unwrapped(err)
+    assert all(meaning in warning for meaning in GRAVITY_MEANINGS.values())
     assert "site.gravity_is" in shown(own)["warnings"][0]
     assert "warning" not in foucault("show", own, "--set", "site.gravity_is=effective")[2]
     assert "warning" not in foucault("show", "paris", "--set", "run.t_end=20")[2]

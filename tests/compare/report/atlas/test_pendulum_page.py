@@ -12,6 +12,7 @@ from browsing import CHROMIUM, in_browser
 from pages import blocks
 
 from compare.report.atlas.pendulum_page import pendulum_page
+from reference import Scene
 
 browser = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 
@@ -51,6 +52,14 @@ def test_every_field_has_a_label_a_meaning_and_a_place_for_its_mistake(page):
         assert f'id="{name}.meaning"' in text and f'id="{name}.wrong"' in text
     ids = re.findall(r' id="([^"]+)"', text.partition("<script")[0])
     assert len(ids) == len(set(ids))
+
+
+def test_the_form_says_of_each_meaning_of_g_what_a_scene_says_of_it(page):
+    buttons = re.findall(r'name="site.gravity_is".*?<span>(.*?)</span>', page.read_text())
+    said = [html.unescape(re.sub("<.*?>", "", button)) for button in buttons]
+    meanings = [text.partition(".")[0] for text in said]
+    site = Scene.model_json_schema()["$defs"]["Site"]["properties"]
+    assert "; ".join(meanings) == site["gravity_is"]["description"]
 
 
 def test_the_page_has_the_lines_of_the_documentation(page):
