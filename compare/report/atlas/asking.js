@@ -33,6 +33,7 @@ let timer = null;
 let files = []; // that were judged last
 const changes = new Set(); // since then: names of CHANGED
 let largestError = null; // in m, of the last verdict
+let judgedTolerance = null; // text of the field when files were judged last
 
 // The form.
 
@@ -302,7 +303,9 @@ async function judgeFiles(chosen) {
   shown.className = "working";
   shown.replaceChildren(made("p", { className: "word" }, "Judging …"));
   unmark("tolerance", "pendulum");
-  const result = await worker.ask("judge", { files, tolerance: at("tolerance").value });
+  const tolerance = at("tolerance").value;
+  judgedTolerance = tolerance;
+  const result = await worker.ask("judge", { files, tolerance });
   if (worker !== motion.worker) return;
   const { run } = sceneOf(pendulum.texts, fields);
   const scene = { name: pendulum.title || "this pendulum", end: run.t_end, known: knownBy, bound: "estimated error of the page" };
@@ -333,6 +336,11 @@ function judgeByEnter(event) {
   if (event.key !== "Enter") return;
   if (changes.has("rows") || !files.length) judgePasted();
   else judgeFiles(files);
+}
+
+// Another tolerance, when its field is left. A browser fires this event for Enter as well, after the key, which has judged.
+function judgeByChange() {
+  if (at("tolerance").value !== judgedTolerance) judgeFiles(files);
 }
 
 // What can be kept.
@@ -375,7 +383,7 @@ form.addEventListener("input", ({ target }) => {
   takeSoon();
 });
 at("preset").addEventListener("change", (event) => takePreset(event.target.value));
-at("tolerance").addEventListener("change", () => judgeFiles(files));
+at("tolerance").addEventListener("change", judgeByChange);
 at("tolerance").addEventListener("input", () => mark("tolerance"));
 at("tolerance").addEventListener("keydown", judgeByEnter);
 at("pasted").addEventListener("input", () => mark("rows"));

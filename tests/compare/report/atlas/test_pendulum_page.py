@@ -327,6 +327,47 @@ def test_a_verdict_is_compared_with_the_one_before_and_marked_where_it_is_out_of
     assert "the pendulum has changed" in told["wrongForm"]
 
 
+ENTERS = r"""
+  await until(computed);
+  const motion = await player.ready() && rowsNow();
+  const wrong = (size) => motion("t,x,y", (x, y, t) => [x * Math.cos(size * t), y]);
+  let judgements = 0;
+  const isJudging = ({ addedNodes }) => [...addedNodes].some((node) => node.textContent === "Judging …");
+  const count = (records) => { judgements += records.filter(isJudging).length; };
+  new MutationObserver(count).observe(shown, { childList: true });
+  const judged = async () => {
+    const answer = [...(await verdict()), judgements];
+    judgements = 0;
+    return answer;
+  };
+  const fire = (event) => at("tolerance").dispatchEvent(event);
+  const key = () => fire(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+  const change = () => fire(new Event("change", { bubbles: true }));
+
+  await paste(wrong(1e-3));
+  await judged();
+  hold("pasted", wrong(5e-4)); // a browser fires both events for Enter in a field that was typed in
+  hold("tolerance", "1e-5");
+  key();
+  change();
+  told.both = await judged();
+  key(); // and the first alone for Enter once more
+  told.again = await judged();
+  hold("tolerance", "1e3"); // and the second alone where the field is left
+  change();
+  told.left = await judged();
+"""
+
+
+@browser
+def test_enter_in_the_tolerance_judges_once(page, tmp_path):
+    asked = {"release.x": "0.3", "release.y": "0.4", "run.t_end": "60", "run.grid_step": "1"}
+    told = in_browser(page, BEGIN + ENTERS + END, tmp_path, fragment=f"#{urlencode(asked)}")
+    assert [told[name][2] for name in ("both", "again", "left")] == [1, 1, 1]
+    assert "in the verdict before" in told["both"][1], "the rows in the box are other ones"
+    assert told["both"][0] == told["again"][0] == "disagrees" and told["left"][0] == "agrees"
+
+
 def test_the_lines_to_print_stand_below_where_rows_are_pasted_and_judged(page):
     text = page.read_text()
     order = [text.index(word) for word in ('id="drop"', 'id="verdict"', "How to print t,x,y")]
