@@ -389,7 +389,7 @@ def wrong_boxes_are_refused(module):
 
 
 def bounds_of_the_motion_hold(module):
-    """(4.5) to (4.7) in the scene's time, in which a pendulum under less gravity moves faster; γ₀ is the scene's own."""
+    """(4.5) to (4.7) in the scene's time, in which a pendulum under less gravity is faster; γ₀ is the scene's own."""
     fast = {"x": "0", "y": "0", "vx": "3", "length": "1", "gravity": "10", "rotation_rate": "0"}
     hanging = scene(drag="0.25", **fast)
     balls = module.BoxBalls(widened(hanging, {"gravity": "0.2", "drag": "0.25"}), BITS)
