@@ -100,7 +100,8 @@ def _not_tried(cells: Sequence[Cell]) -> str:
 
 def _run_names(cells: Sequence[Cell]) -> Callable[[Cell], str]:
     """Return a function that names a cell's method, with the precision if the method has several."""
-    precisions = Counter(method for method, _ in {(cell.method, cell.precision) for cell in cells})
+    runs = {(cell.method, cell.precision) for cell in cells}
+    precisions = Counter(method for method, _ in runs)
 
     def name(cell: Cell) -> str:
         if precisions[cell.method] > 1:
@@ -269,7 +270,8 @@ def text_table(document: dict[str, Any]) -> str:
     """Return main results and one line for each method, as text for a terminal."""
     cells = _cells_of(document)
     runs = _long_runs_of(document)
-    present = [status for status in Status if status in {cell.status for cell in cells}]
+    statuses = {cell.status for cell in cells}
+    present = [status for status in Status if status in statuses]
     rows = []
     for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
         group = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
