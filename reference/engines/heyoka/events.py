@@ -139,12 +139,7 @@ def march(
                         f"zeros of xdot near t = {float(steps[i].end)} s: {contradiction}.", AT_REST
                     )
                 limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(_SHORTER**retries)
-                previous = max(i - 1, 0)
-                before = steps[previous]
-                stepper.back(before.mark)
-                del states[before.states :]
-                del zeros[before.zeros :]
-                del steps[previous:]
+                _take_back(stepper, steps, max(i - 1, 0), states, zeros)
                 continue
             retries = retries if limit < end - mark[0] else 0
             del steps[:-1]
@@ -152,6 +147,17 @@ def march(
         if report is not None:
             report(float(stepper.time))
     return np.array(states, dtype=stepper.numbers.dtype), zeros
+
+
+def _take_back(
+    stepper: Stepper, steps: list[_Step], first: int, states: list[Any], zeros: list[Zero]
+) -> None:
+    """Return to the start of the step `first`, and delete what was recorded since."""
+    step = steps[first]
+    stepper.back(step.mark)
+    del states[step.states :]
+    del zeros[step.zeros :]
+    del steps[first:]
 
 
 def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int, str] | None:
