@@ -272,18 +272,10 @@ def text_table(document: dict[str, Any]) -> str:
     runs = _long_runs_of(document)
     statuses = {cell.status for cell in cells}
     present = [status for status in Status if status in statuses]
-    rows = []
-    for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
-        group = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
-        counts = Counter(cell.status for cell in group)
-        outcomes = [counts[status] or "" for status in present]
-        rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
-    numbers = ("setting", "asked", *(status.words for status in present))
-    table = PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
     lines = []
     for text in headlines(cells):
         lines += as_lines(text, hanging="  ")
-    lines += ["", *table.lines(keys=2), ""]
+    lines += ["", *_outcome_table(cells, present).lines(keys=2), ""]
     for name in document["programs"]:
         lines += [*_program_lines(name, cells), ""]
     if Status.OK in present:
@@ -294,6 +286,18 @@ def text_table(document: dict[str, Any]) -> str:
         lines += ["", *as_lines(text, hanging="  ")]
     lines += ["", *as_lines(f"load: {busy(cells)}", hanging="  ")]
     return "\n".join(lines)
+
+
+def _outcome_table(cells: Sequence[Cell], present: Sequence[Status]) -> PageTable:
+    """Return a table of how many runs of each method have each of the outcomes."""
+    rows = []
+    for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
+        group = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
+        counts = Counter(cell.status for cell in group)
+        outcomes = [counts[status] or "" for status in present]
+        rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
+    numbers = ("setting", "asked", *(status.words for status in present))
+    return PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
 
 
 def _program_lines(name: str, cells: Sequence[Cell]) -> list[str]:
