@@ -245,8 +245,8 @@ def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8)
     getattr(axes, f"set_{which}lim")(low, high)
     first = math.ceil(math.log10(low) - 1e-9)
     last = math.floor(math.log10(high) + 1e-9)
-    every = max(1, math.ceil((last - first + 1) / labels))
-    exponents = [n for n in range(first, last + 1) if n % every == 0]
+    spacing = max(1, math.ceil((last - first + 1) / labels))
+    exponents = [n for n in range(first, last + 1) if n % spacing == 0]
     ticks = [10.0**n for n in exponents]
     getattr(axes, f"set_{which}ticks")(ticks, powers_of_ten(exponents))
     axes.minorticks_off()

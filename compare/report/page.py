@@ -194,7 +194,9 @@ class PageTable:
     def of_records(cls, names: Iterable[str], records: Iterable[Mapping[str, Any]]) -> PageTable:
         """Return the rows of a JSON document, with these names as columns."""
         names = list(names)
-        rows = [[record.get(name) for name in names] for record in records]
+        rows = []
+        for record in records:
+            rows.append([record.get(name) for name in names])
         return cls(dict.fromkeys(names, ""), rows)
 
     def html(self, caption: str = "") -> Html:

@@ -100,7 +100,8 @@ def _not_tried(cells: Sequence[Cell]) -> str:
 
 def _run_names(cells: Sequence[Cell]) -> Callable[[Cell], str]:
     """Return a function that names a cell's method, with the precision if the method has several."""
-    precisions = Counter(method for method, _ in {(cell.method, cell.precision) for cell in cells})
+    runs = {(cell.method, cell.precision) for cell in cells}
+    precisions = Counter(method for method, _ in runs)
 
     def name(cell: Cell) -> str:
         if precisions[cell.method] > 1:
@@ -269,19 +270,12 @@ def text_table(document: dict[str, Any]) -> str:
     """Return main results and one line for each method, as text for a terminal."""
     cells = _cells_of(document)
     runs = _long_runs_of(document)
-    present = [status for status in Status if status in {cell.status for cell in cells}]
-    rows = []
-    for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
-        group = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
-        counts = Counter(cell.status for cell in group)
-        outcomes = [counts[status] or "" for status in present]
-        rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
-    numbers = ("setting", "asked", *(status.words for status in present))
-    table = PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
+    statuses = {cell.status for cell in cells}
+    present = [status for status in Status if status in statuses]
     lines = []
     for text in headlines(cells):
         lines += as_lines(text, hanging="  ")
-    lines += ["", *table.lines(keys=2), ""]
+    lines += ["", *_outcome_table(cells, present).lines(keys=2), ""]
     for name in document["programs"]:
         lines += [*_program_lines(name, cells), ""]
     if Status.OK in present:
@@ -292,6 +286,18 @@ def text_table(document: dict[str, Any]) -> str:
         lines += ["", *as_lines(text, hanging="  ")]
     lines += ["", *as_lines(f"load: {busy(cells)}", hanging="  ")]
     return "\n".join(lines)
+
+
+def _outcome_table(cells: Sequence[Cell], present: Sequence[Status]) -> PageTable:
+    """Return a table of how many runs of each method have each of the outcomes."""
+    rows = []
+    for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
+        group = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
+        counts = Counter(cell.status for cell in group)
+        outcomes = [counts[status] or "" for status in present]
+        rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
+    numbers = ("setting", "asked", *(status.words for status in present))
+    return PageTable({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
 
 
 def _program_lines(name: str, cells: Sequence[Cell]) -> list[str]:

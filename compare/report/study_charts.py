@@ -162,11 +162,13 @@ def _panels(lines: Sequence[Ladder], bound_m: float) -> list[_Panel]:
     return [_Panel(split, highest), _Panel(lowest / 30, split, height=1.2, labels=8)]
 
 
-def _usual_or_on_front(every: Sequence[Curve], best: Sequence[Row]) -> list[Curve]:
+def _usual_or_on_front(curves: Sequence[Curve], best: Sequence[Row]) -> list[Curve]:
     on_front = {row.key for row in best}
-    return [
-        curve for curve in every if curve.usual or any(row.key in on_front for row in curve.rows)
-    ]
+
+    def is_shown(curve: Curve) -> bool:
+        return curve.usual or any(row.key in on_front for row in curve.rows)
+
+    return [curve for curve in curves if is_shown(curve)]
 
 
 def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
@@ -178,7 +180,8 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
     usual = filter(attrgetter("usual"), curves(rows))
     lines = ladders(usual, cost_of, partial(error_of, bound_m=bound_m))
     coarse = [line for line in lines if line.family != Family.MANY_DIGITS] or lines
-    families = [family for family in Family if any(line.family == family for line in coarse)]
+    present = {line.family for line in coarse}
+    families = [family for family in Family if family in present]
     if not families:
         return None
     x_limits = limits(_joined(line.x for line in coarse))

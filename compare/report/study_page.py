@@ -96,7 +96,11 @@ def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
 def _hidden(rows: Sequence[Row]) -> str:
     """Return a sentence about the methods that the picture of all of them cannot show."""
     unknown = {row.key for row in rows if not row.cpu_s or not (row.measured or row.failed)}
-    hidden = [curve.label for curve in curves(rows) if unknown & {row.key for row in curve.rows}]
+    hidden = []
+    for curve in curves(rows):
+        keys = {row.key for row in curve.rows}
+        if keys & unknown:
+            hidden.append(curve.label)
     if not hidden:
         return ""
     return f" Runs without a cost or an error are of {', '.join(hidden)}."

@@ -196,7 +196,8 @@ def _isolated(
             if name != "XLA_FLAGS" or not os.environ.get(name)
         }
         worker = Worker(measured, measurement, remaining, env=env)
-        starting_s, patience_s = _STARTING_S, measurement.patience_s
+        starting_s = _STARTING_S
+        patience_s = measurement.patience_s
         try:
             while remaining:
                 # where processes share a core, all take longer

@@ -99,13 +99,18 @@ def character(scene: Scene, times: Array, states: Array) -> Character:
 def _tangent_jacobian(state: Array, k: Constants) -> Array:
     """Return the 4 by 4 Jacobian of n'' = F - n (v·v + n·F) on the tangent space of |n| = 1, n·v = 0."""
     model = FORMULATIONS["space"]
-    n, v = state[:3], state[3:]
-    size = np.array([1.0] * 3 + [max(1.0, float(np.abs(v).max()))] * 3)
+    n = state[:3]
+    v = state[3:]
+    fastest = max(1.0, float(np.abs(v).max()))
+    size = np.array([1.0] * 3 + [fastest] * 3)
     nudges = np.diag(_NUDGE * size)  # a column for each displacement
-    ahead, behind = (
-        np.array(model.derivatives(tuple(state[:, None] + moved), k, math))
-        for moved in (nudges, -nudges)
-    )
+
+    def rates(displacements: Array) -> Array:
+        displaced = tuple(state[:, None] + displacements)
+        return np.array(model.derivatives(displaced, k, math))
+
+    ahead = rates(nudges)
+    behind = rates(-nudges)
     jacobian = (ahead - behind) / (2 * _NUDGE * size)
     normals = np.array([np.concatenate([n, np.zeros(3)]), np.concatenate([v, n])])
     _, _, basis = np.linalg.svd(normals * size)  # positions and rates in comparable units
@@ -120,13 +125,10 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     is left; then runs from neighbouring releases are compared in as many bits as that takes, and a
     relative change counts.
     """
-    response, factors = Sensitivity(scene, times), [1.0]
-    for name in scene.exact.by_name.keys() & {
-        "release.x",
-        "release.y",
-        "release.angle",
-        "release.azimuth",
-    }:
+    response = Sensitivity(scene, times)
+    factors = [1.0]
+    of_release = {"release.x", "release.y", "release.angle", "release.azimuth"}
+    for name in scene.exact.by_name.keys() & of_release:
         displacement = response.derivative(name)[:, :3]
         sizes = np.linalg.norm(displacement, axis=1)
         at_release = 1.0 if name in ("release.x", "release.y") else float(sizes[0])
@@ -135,11 +137,10 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
     if max(factors) <= _IN_DOUBLE:
         return max(factors)
     try:
-        return max(
-            *factors, 10 ** digits_lost(scene.exact, tuple(scene.exact.grid), constants=False)
-        )
+        digits = digits_lost(scene.exact, tuple(scene.exact.grid), constants=False)
     except UnreachableError:
         return math.inf
+    return max(*factors, 10**digits)
 
 
 def reason_of(

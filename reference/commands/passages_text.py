@@ -85,7 +85,8 @@ def limit_table(
     by_share = dict(sorted(limits.items(), key=lambda item: -item[1]["share"]))
     half_widths = [f"{widths[name]} {unit_of(name)}" for name in by_share]
     shares = [f"{100 * limit['share']:.1f} %" for limit in by_share.values()]
-    moved = [_moved(*(float(limit[key]) for key in moves)) for limit in by_share.values()]
+    move_key, error_key = moves
+    moved = [_moved(float(limit[move_key]), float(limit[error_key])) for limit in by_share.values()]
     return table(
         [
             TextColumn(["input"], list(by_share), is_number=False),
@@ -110,12 +111,14 @@ def _enough(passage: dict[str, Any]) -> str:
     enough = passage["enough_by_estimate"]
     if enough["is_within"]:
         return f"By estimate it is within {wanted} already: no input has to be measured better."
-    alone = {name: one["width"] for name, one in enough["alone"].items() if one["width"]}
-    too_little = {
-        name: one["if_exact_half_width_s"]
-        for name, one in enough["alone"].items()
-        if not one["width"] and float(one["if_exact_half_width_s"]) >= float(passage["wanted_s"])
-    }
+    wanted_s = float(passage["wanted_s"])
+    alone = {}
+    too_little = {}
+    for name, narrowed in enough["alone"].items():
+        if narrowed["width"]:
+            alone[name] = narrowed["width"]
+        elif float(narrowed["if_exact_half_width_s"]) >= wanted_s:
+            too_little[name] = narrowed["if_exact_half_width_s"]
     if alone:
         text = f"By estimate, for {wanted} narrow {in_words(_with_units(alone))}"
         text += ": one of these suffices." if len(alone) > 1 else "."

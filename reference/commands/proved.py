@@ -170,7 +170,8 @@ def _as_far_as_it_goes(
         holds_s: up to which time the states can be proved, in s.
         report: called with the simulated time reached, in s.
     """
-    sections = [*dict.fromkeys((*(scene.run.sections or ()), "highest"))]
+    words = scene.run.sections or ()
+    sections = list(dict.fromkeys((*words, "highest")))
     for _ in range(_TRIES):
         if holds_s <= 0:
             return None
@@ -194,23 +195,30 @@ def _ranges_document(
     }
     if ranges is None:
         passages = [
-            _numbered(word, one) | {"reason": "nothing is proved"}
-            for word in section_words(scene)
-            for one in asked
+            _numbered(word, passage) | {"reason": "nothing is proved"}
+            for word, passage in _in_each_section(scene, asked)
         ]
         return document | {"reason": _TOO_UNCERTAIN, "passages": passages}
     swing = ranges.swing
+    omitted = _left_out(swing) if swing else {}
+    useless = ["precession_deg_per_h"] if _says_nothing(scene, swing) else []
     words = scene.run.sections or ()
+    passages = [_passage(ranges, word, passage) for word, passage in _in_each_section(scene, asked)]
     return document | {
         "period_s": _texts(ranges.period),
         **_interval_texts(swing, _MEAN[1:]),
-        "left_out": _left_out(swing) if swing else {},
-        "useless": ["precession_deg_per_h"] if _says_nothing(scene, swing) else [],
+        "left_out": omitted,
+        "useless": useless,
         "first_transits_s": _first_times(ranges.transits),
         "first_passages_s": {word: _first_times(ranges.sections[word].table) for word in words},
         "possible": len(ranges.possible),
-        "passages": [_passage(ranges, word, one) for word in section_words(scene) for one in asked],
+        "passages": passages,
     }
+
+
+def _in_each_section(scene: Scene, asked: Sequence[Asked]) -> list[tuple[str, Asked]]:
+    """Return the passages that were asked for, of each section in turn."""
+    return [(word, passage) for word in section_words(scene) for passage in asked]
 
 
 def _says_nothing(scene: Scene, swing: Swing | None) -> bool:
@@ -260,13 +268,13 @@ def _estimate_passages(
     period = document["first_order"].get("period_s")
     longest_s = float(period[1]) if period else None
     estimates = PassageEstimates(scene, widths, asked, longest_s)
-    every = [(word, one) for word in section_words(scene) for one in asked]
-    for passage, (word, one) in zip(document["passages"], every, strict=True):
-        found = estimates.document(word, one)
+    asked_passages = _in_each_section(scene, asked)
+    for passage, (word, asked_passage) in zip(document["passages"], asked_passages, strict=True):
+        estimate = estimates.document(word, asked_passage)
         if "t_s" in passage:
             # what is proved comes, whatever is estimated
-            found.pop("reason", None)
-        passage.update(found)
+            estimate.pop("reason", None)
+        passage.update(estimate)
 
 
 def _prove_alone(
@@ -290,8 +298,9 @@ def _prove_alone(
         except BoxTooWideError as error:
             interval = ends_before(error.holds_s)
         if not isinstance(interval, str):
+            narrowest = _both(interval, passage.get("t_s"))
             passage.pop("reason", None)
-            passage.update(_timed(_both(interval, passage.get("t_s")), own_period))
+            passage.update(_timed(narrowest, own_period))
         elif "reason" in passage:
             passage["reason"] = interval
 
@@ -324,17 +333,16 @@ def _narrowing(
     goals = len(passages) + falls_short
     if not goals:
         return {}
-    narrowing = Narrowing(
-        scene, widths, goals, begin(f"{scene.id}: narrower inputs", goals, "proofs")
-    )
-    found = {}
+    report = begin(f"{scene.id}: narrower inputs", goals, "proofs")
+    narrowing = Narrowing(scene, widths, goals, report)
+    by_goal = {}
     for passage in passages:
         name = f"{passage['section']} {passage['number']}"
         until_s = _latest_s(passage, document["first_order"].get("period_s"))
-        found[name] = narrowing.for_a_passage(passage, until_s)
+        by_goal[name] = narrowing.for_a_passage(passage, until_s)
     if falls_short:
-        found["run"] = narrowing.for_the_run(float(document["over_s"]))
-    return found
+        by_goal["run"] = narrowing.for_the_run(float(document["over_s"]))
+    return by_goal
 
 
 def _latest_s(passage: dict[str, Any], period_s: Sequence[str] | None) -> Fraction:

@@ -45,14 +45,17 @@ class Sheet:
 
     def scaled_integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
         """Return some columns times a common power of ten, as integers, and that power of ten."""
-        texts = []
+        columns_of_texts = []
         decimals = 0
         for name in columns:
             index = self.header.index(name)
-            column = [row[index] for row in self.rows]
-            decimals = max([decimals, *map(_decimals_in, column)])
-            texts.append(column)
-        scaled = [integers(_scaled(text, decimals) for text in column) for column in texts]
+            texts = [row[index] for row in self.rows]
+            decimals = max([decimals, *map(_decimals_in, texts)])
+            columns_of_texts.append(texts)
+
+        scaled = []
+        for texts in columns_of_texts:
+            scaled.append(integers(_scaled(text, decimals) for text in texts))
         return scaled, 10**decimals
 
     def csv(self) -> str:

@@ -359,7 +359,8 @@ class _LocalAxes:
         x, second, third, *_ = step.coefficients
         if step.columns[:3] == LOCAL:
             return [x, second, third]
-        sin, cos, unit = self._sin, self._cos, self._unit
+        sin, cos = self._sin, self._cos
+        unit = self._unit
         pairs = list(zip(second, third, strict=True))
         y = [(m * sin + w * cos) // unit for m, w in pairs]
         z = [(w * sin - m * cos) // unit for m, w in pairs]

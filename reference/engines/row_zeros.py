@@ -20,7 +20,9 @@ from ..numbers.precision import Array
 from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
-TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot or a section's form, and of the rate of the height
+# kinds of zeros
+TRANSIT = 0  # of xdot, or of a section's form
+HEIGHT = 1  # of the rate of the height
 _RISE = (0, 0, 0, 0, 0, 1, 0)  # the form of that rate
 _FINER = 16  # parts of the time between two samples, where a form may dip to zero there
 # of a swing's period after the release: there heyoka may report the zero at the release
@@ -69,7 +71,9 @@ class RowMotion:
 
     def form(self, form: Any) -> tuple[Any, Any]:
         """Return a form, as `PlumbAxes.forms` gives it, and its rate."""
-        a, b, d = form[:3], form[3:6], form[6]
+        a = form[:3]
+        b = form[3:6]
+        d = form[6]
         n = (self.n[0], self.n[1], self.n[2] + 1)
         value = minus(plus(dot(a, n), dot(b, self.v)), d)
         rate = plus(dot(a, self.v), dot(b, self.a))
@@ -83,8 +87,10 @@ class RowMotion:
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return the motion at some of its times."""
-        vectors = [tuple(part[chosen] for part in vector) for vector in (self.n, self.v, self.a)]
-        return type(self)(*vectors)
+        n = tuple(part[chosen] for part in self.n)
+        v = tuple(part[chosen] for part in self.v)
+        a = tuple(part[chosen] for part in self.a)
+        return type(self)(n, v, a)
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,8 @@ def acceleration(n: Vector, v: Vector, k: Constants) -> Vector:
 
 def rates(state: Sequence[Any], k: Constants) -> tuple[Any, ...]:
     """Return the rates of x, y, z (m/s) and vx, vy, vz (m/s²), given these six in m and m/s."""
-    n, v = (tuple(part / k.length for part in half) for half in (state[:3], state[3:]))
+    n = tuple(part / k.length for part in state[:3])
+    v = tuple(part / k.length for part in state[3:])
     return (*state[3:], *(k.length * part for part in acceleration(n, v, k)))
 
 

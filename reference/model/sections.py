@@ -38,11 +38,11 @@ def form_of(word: str, start: Start) -> Form:
     """
     if word == XDOT:
         return Form(_NOTHING, (1, 0, 0), 0)
-    ctx, angle = start.ctx, to_mpf(azimuth_of(word) / 180, start.ctx)
+    ctx = start.ctx
+    angle = to_mpf(azimuth_of(word) / 180, ctx)
+    direction = (ctx.cospi(angle), ctx.sinpi(angle), 0)
     try:
-        return form_along(
-            word, (ctx.cospi(angle), ctx.sinpi(angle), 0), start.k.pull, lambda: start.rest
-        )
+        return form_along(word, direction, start.k.pull, lambda: start.rest)
     except UnreachableError:
         raise gate_without_rest(
             word, "so fast a rotation, or weightlessness, leaves none"

@@ -65,7 +65,8 @@ class Start:
     @cached_property
     def fastest_rate(self) -> float:
         """Sum of the rates of swing, release, rotation and drag, in 1/s."""
-        ctx, k = self.ctx, self.k
+        ctx = self.ctx
+        k = self.k
         return float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(self.v) + abs(k.rate) + k.drag)
 
     @cached_property
@@ -148,7 +149,8 @@ def xdot_vanishes(start: Start) -> bool:
     (straight up or down at a pole or on the equator, or no force at all), and without rotation also
     where it is released in the plane x = 0 with vx = 0.
     """
-    n, v = start.n, start.v
+    n = start.n
+    v = start.v
     if not any(v) and not any(cross(n, force(n, (0, 0, 0), start.k))):
         return True
     return not start.k.rate and n[0] == 0 and v[0] == 0
@@ -162,7 +164,9 @@ def zero_at_release(start: Start) -> int:
     cord at right angles to the axis, as the bob then starts along it. Released at rest with a
     horizontal cord, to the east or at a pole, the bob falls straight down, and x shrinks like t⁴.
     """
-    n, v, turn = start.n, start.v, start.k.turn
+    n = start.n
+    v = start.v
+    turn = start.k.turn
     at_pole = turn[1] == 0 and start.k.pull[1] == 0
     if v[0] != 0:
         return 0

@@ -47,9 +47,11 @@ class Table(Framed):
 
         The errors are rounded up.
         """
-        values, errors = [], []
+        values = []
+        errors = []
         for row in rows:
-            middles, halves = [], []
+            middles = []
+            halves = []
             for interval in row:
                 low = (interval.low.numerator << bits) // interval.low.denominator
                 high = -((-interval.high.numerator << bits) // interval.high.denominator)
@@ -98,8 +100,12 @@ class Table(Framed):
         if columns == self.columns:
             return self
         places = [place_of(name, self.columns) for name in columns]
-        values = [tuple(row[i] for i in places) for row in self.values]
-        errors = [tuple(row[i] for i in places) for row in self.errors]
+
+        def chosen(row: tuple[int, ...]) -> tuple[int, ...]:
+            return tuple(row[i] for i in places)
+
+        values = [chosen(row) for row in self.values]
+        errors = [chosen(row) for row in self.errors]
         return Table(columns, self.bits, values, errors)
 
     def distance(self, other: Table) -> Table:

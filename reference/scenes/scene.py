@@ -69,13 +69,10 @@ class Scene(SceneTable):
         def read(text: str | None) -> Fraction:
             return as_read(text or "0", self.inputs)
 
-        inverse, kind = (
-            self.site.inverse_flattening,
-            "position" if self.release.angle is None else "angles",
-        )
-        numbers: dict[str, Any] = {
-            name: read(getattr(self.site, name)) for name in SITE
-        } | dict.fromkeys(RELEASES)
+        inverse = self.site.inverse_flattening
+        kind = "position" if self.release.angle is None else "angles"
+        numbers: dict[str, Any] = {name: read(getattr(self.site, name)) for name in SITE}
+        numbers |= dict.fromkeys(RELEASES)
         numbers[kind] = tuple(read(getattr(self.release, name)) for name in RELEASES[kind])
         return Inputs(
             length=read(self.pendulum.length),
@@ -291,7 +288,8 @@ def _wrong_in_release(scene: Scene, exact: Inputs) -> Iterator[InputError]:
         yield InputError(
             f"release.{name}", NOTHING, "a value", f"Give both {' and '.join(needed)}."
         )
-    position, length = exact.position, exact.length
+    position = exact.position
+    length = exact.length
     if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
         got = Described(f"x = {release.x}, y = {release.y}")
         expected = (

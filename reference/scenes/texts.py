@@ -140,10 +140,11 @@ def checked(holds: Callable[[Any], bool], expected: str) -> AfterValidator:
 
 def within(low: str, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
     """Return the check that a number lies in a range, with its ends or (`open_low`) without the lower one."""
-    least, most = Fraction(low), Fraction(high) if high else None
-    expected = f"a number {'above' if open_low else 'at least'} {low}" + (
-        f" and at most {high}" if high else ""
-    )
+    least = Fraction(low)
+    most = Fraction(high) if high else None
+    expected = f"a number above {low}" if open_low else f"a number at least {low}"
+    if high:
+        expected += f" and at most {high}"
 
     def check(text: str, info: ValidationInfo) -> str:
         value = as_read(text, _reading(info))
@@ -211,7 +212,8 @@ def explained(error: ValidationError, known: Mapping[str, str]) -> list[InputErr
 
 def _explained(details: ErrorDetails, known: Mapping[str, str]) -> InputError:
     field = ".".join(str(part)[:_LONGEST_KEY] for part in details["loc"])
-    kind, got = details["type"], details["input"]
+    kind = details["type"]
+    got = details["input"]
     cause = details.get("ctx", {}).get("error")
     if isinstance(cause, Refused):
         got = ", ".join(map(str, got)) if isinstance(got, tuple) else got

@@ -342,10 +342,11 @@ def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], en
     The pair in double is not used: a single fall from the top may cost all its digits, and what
     follows little.
     """
-    (less, sooner), (more, later) = last, now
-    if less <= LONG_DOUBLE.prec or later <= sooner:
+    last_prec, last_until = last
+    prec, until = now
+    if last_prec <= LONG_DOUBLE.prec or until <= last_until:
         return 0
-    return math.ceil(more + (end - later) * (more - less) / (later - sooner))
+    return math.ceil(prec + (end - until) * (prec - last_prec) / (until - last_until))
 
 
 def _good_until(gaps: Table, times: tuple[Fraction, ...], largest: dict[str, Fraction]) -> Fraction:

@@ -192,7 +192,8 @@ class Ranges(WithZeros[Intervals]):
         apses = self._apses
         if wide is None or wide.precession is None or not apses:
             return None
-        first, last = apses[0], apses[-1]
+        first = apses[0]
+        last = apses[-1]
         swings = Fraction(len(apses) - 1, 2)
         # by how much the span grows
         span = Ends(

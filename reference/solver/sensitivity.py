@@ -176,8 +176,12 @@ class Sensitivity:
         # many names, as each is a quantity of the motion or its derivative
         size = len(_MODEL.variables)
         base = np.array([float(number) for number in _numbers_of(self.scene.exact)])
-        start, constants, length = base[:size], base[size:-1], base[-1]
-        start_slope, constants_slope, length_slope = slope[:size], slope[size:-1], slope[-1]
+        start = base[:size]
+        constants = base[size:-1]
+        length = base[-1]
+        start_slope = slope[:size]
+        constants_slope = slope[size:-1]
+        length_slope = slope[-1]
 
         # keeps the derivative near 1, for the step size
         strength = max(1.0, float(np.abs(slope).max()))

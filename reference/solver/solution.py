@@ -252,7 +252,9 @@ def separated(
     Zeros lie in (0, end], to which the ball of an undecided cluster is cut.
     """
     columns = columns_of(word)
-    rows, directions, possible = [], [], []
+    rows = []
+    directions = []
+    possible = []
     for zero in zeros:
         if zero.kind == "one":
             rows.append(tuple(getattr(zero, name) for name in columns))

@@ -113,11 +113,11 @@ class AxisTable:
 
     def words(self, rows: Any) -> dict[str, list[str]]:
         """Return the values of rows that are words, by field."""
-        return {
-            key: [texts[place] for place in places]
-            for key, texts, places in self._placed(rows)
-            if key in WORD_FIELDS
-        }
+        words = {}
+        for key, texts, places in self._placed(rows):
+            if key in WORD_FIELDS:
+                words[key] = [texts[place] for place in places]
+        return words
 
     def wrong(self, rows: Sequence[int], reading: Reading) -> dict[int, str]:
         """Return, by row of a list, what is wrong with its first invalid value.

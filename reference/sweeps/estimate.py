@@ -108,7 +108,9 @@ def errors_by_moved_runs(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Erro
 
 def _is_wild(rows: Rows, estimated: Errors) -> Array:
     """Return where the errors may cancel: they have grown, or the bob can reach the pivot."""
-    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
+    n = rows.n[..., 0]
+    V = rows.V[..., 0]
+    pull = rows.pull[..., 0]
     reaches_the_pivot = (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
     is_small = estimated.position <= _GROWN * rows.length[:, 0]
     return np.asarray(~is_small | reaches_the_pivot)

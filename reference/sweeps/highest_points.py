@@ -169,7 +169,9 @@ def _down(rows: Rows) -> Array:
 
 def fastest_of(rows: Rows) -> Array:
     """Return a bound of the speed over l in axes that do not turn, in 1/s: at the lowest point."""
-    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
+    n = rows.n[..., 0]
+    V = rows.V[..., 0]
+    pull = rows.pull[..., 0]
     # height of the release over the lowest point
     height = np.fmax(1 - (n * pull).sum(axis=1) / rows.rate**2, 0.0)
     return np.asarray(rows.rate * np.sqrt(2 * height) + np.linalg.norm(V, axis=1))

@@ -145,7 +145,10 @@ class Part:
 
 def _joined(tables: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Return tables of the same columns, one below the other."""
-    return {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}
+    joined = {}
+    for name in tables[0]:
+        joined[name] = np.concatenate([table[name] for table in tables])
+    return joined
 
 
 def solve_part(request: Request, numbers: range, promote: Promote | None = promoted) -> Part:
@@ -176,7 +179,8 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
     finite = _finite(rows)
     # places of rows that go to the solver or fail, and why; "" where the request wants it
     reasons = _beyond_double(request, part, places[~finite].tolist())
-    rows, places = rows[finite], places[finite]
+    rows = rows[finite]
+    places = places[finite]
     if request.promotes:
         reasons |= dict.fromkeys(places.tolist(), "")
     elif len(places):

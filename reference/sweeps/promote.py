@@ -275,11 +275,15 @@ def _worst_ratio(request: Request, number: int, row: Mapping[str, Any]) -> float
     values = truth.values
     ratios = [0.0]
     for column in request.columns:
-        name, error = column.name, column.error
+        name = column.name
+        error_name = column.error
         is_count = column.kind == "int32" and name != "steps"
         if is_count and row[name] != values[name]:
             return np.inf
-        if error and np.isfinite(values[name]):
-            ratio = abs(row[name] - values[name]) / (row[error] + values[error])
-            ratios.append(np.inf if np.isnan(ratio) else ratio)
+        if error_name and np.isfinite(values[name]):
+            error = abs(row[name] - values[name])
+            ratio = error / (row[error_name] + values[error_name])
+            if np.isnan(ratio):
+                ratio = np.inf
+            ratios.append(ratio)
     return max(ratios)

@@ -176,7 +176,8 @@ def _release(columns: Columns) -> tuple[Vector, Vector]:
 
 def _rising(v: Vector, k: Constants) -> Any:
     """Return the sign of u', the rate at which the bob rises along the plumb line: -1, 0 or 1."""
-    north, up = k.pull[1] * v[1], k.pull[2] * v[2]
+    north = k.pull[1] * v[1]
+    up = k.pull[2] * v[2]
     fall = (north + up).high
     return np.where(_cancel(north, up), 0, -np.sign(fall)).astype(np.int64)
 
@@ -270,13 +271,16 @@ def _rest_position(k: Constants) -> Vector:
     size = square_root(dot(k.pull, k.pull))
     north, up = (part / size for part in k.pull[1:])
     for _ in range(_NEWTON_STEPS):
-        n, along = (0, north, up), (0, -up, north)
+        n = (0, north, up)
+        along = (0, -up, north)
         push = force(n, _AT_REST, k)
         push_rate = subtract(force(along, _AT_REST, k), k.pull)
         step = dot(push, along) / (dot(push, n) - dot(push_rate, along))
-        north, up = north + step * along[1], up + step * along[2]
+        north = north + step * along[1]
+        up = up + step * along[2]
         size = square_root(north * north + up * up)
-        north, up = north / size, up / size
+        north = north / size
+        up = up / size
     pull_size = np.sqrt(k.pull[1].high ** 2 + k.pull[2].high ** 2)
     is_even = np.abs(k.centrifugal[0].high) < _EVEN * pull_size
     is_settled = is_even & (np.abs(step.high) <= _CLOSE)

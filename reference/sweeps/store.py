@@ -104,9 +104,12 @@ class Store:
         Raises:
             InputError: it differs from the plan.
         """
-        stored, asked = self.request.document(), request.document()
-        keys = sorted(asked.keys() - {"identity"})  # the identity has versions, compared below
-        differing = [key for key in keys if json.dumps(stored.get(key)) != json.dumps(asked[key])]
+        stored = self.request.document()
+        requested = request.document()
+        keys = sorted(requested.keys() - {"identity"})  # the identity has versions, compared below
+        differing = [
+            key for key in keys if json.dumps(stored.get(key)) != json.dumps(requested[key])
+        ]
         if differing:
             expected = (
                 f"the same sweep as the one in the folder, which differs in {', '.join(differing)}"
@@ -132,13 +135,13 @@ class Store:
 
     def missing(self) -> list[int]:
         """Return the parts that are missing or damaged, or have the seal of another part."""
-        return [
-            part
-            for part in range(self.request.parts)
-            if not all(self._sound(part, kind) for kind in self._kinds)
-        ]
+        return [part for part in range(self.request.parts) if not self._is_complete(part)]
 
-    def _sound(self, part: int, kind: str) -> bool:
+    def _is_complete(self, part: int) -> bool:
+        """Return whether all files of a part exist with the right seal."""
+        return all(self._is_sound(part, kind) for kind in self._kinds)
+
+    def _is_sound(self, part: int, kind: str) -> bool:
         """Return whether the file of a part exists with the right seal."""
         path = self.path(part, kind)
         try:

@@ -58,18 +58,19 @@ def check_sums(folder: Path) -> list[str]:
         expected, name = match.groups()
         try:
             with regular(folder / name, "PATH", _MAX_BYTES, "a file") as stream:
-                found = sha256(stream.read()).hexdigest()
+                checksum = sha256(stream.read()).hexdigest()
         except FileNotFoundError:
             problems.append(f"{name} is missing, which {SUMS} lists")
             continue
-        if found != expected:
+        if checksum != expected:
             problems.append(f"{name} is not as it was written, by {SUMS}")
     return problems
 
 
 def verify_report(folder: Path) -> tuple[list[str], list[str]]:
     """Return what is wrong with the files and journals of a report, and what cannot be decided."""
-    problems, undecided = [], []
+    problems = []
+    undecided = []
     try:
         problems += check_sums(folder)
     except FileNotFoundError:

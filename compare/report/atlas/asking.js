@@ -97,9 +97,9 @@ function showWrong(texts) {
   const wrong = wrongOf(texts, fields, words);
   for (const { name, choices } of fields) {
     if (choices) continue;
-    const found = wrong[name];
-    at(`${name}.wrong`).textContent = found ? `Expected ${found.expected}. ${found.advice}`.trim() : "";
-    input(name).setAttribute("aria-invalid", String(Boolean(found)));
+    const mistake = wrong[name];
+    at(`${name}.wrong`).textContent = mistake ? `Expected ${mistake.expected}. ${mistake.advice}`.trim() : "";
+    input(name).setAttribute("aria-invalid", String(Boolean(mistake)));
   }
   return Object.keys(wrong).length > 0;
 }
@@ -133,8 +133,8 @@ function factRows(facts) {
   rows.push(["transits", facts.transits ? `${count}, each within ${small(facts.transitError)} s (estimated)` : count]);
   rows.push(["error", `${small(facts.error)} m at the end, estimated from a second run`]);
   if (facts.until < facts.end) {
-    const known = `known to a millionth of the amplitude up to t = ${small(facts.until)} s`;
-    rows.push(["in doubles", `${known}; ask the command for the rest`]);
+    const accuracy = `known to a millionth of the amplitude up to t = ${small(facts.until)} s`;
+    rows.push(["in doubles", `${accuracy}; ask the command for the rest`]);
   }
   return rows;
 }
@@ -165,7 +165,7 @@ async function solvePendulum() {
   }
   motion.facts = solved.facts;
   say(`Computed in ${((performance.now() - begin) / 1000).toPrecision(2)} s.`);
-  at("facts").replaceChildren(factsMade(factRows(solved.facts)));
+  at("facts").replaceChildren(factList(factRows(solved.facts)));
   at("tolerance").placeholder = small(words.TOLERANCE * solved.facts.amplitude);
   player.show(playedMotion(scene, solved), player.time());
   if (files.length) judgeFiles(files);
@@ -258,22 +258,22 @@ function comparedWithBefore({ path }) {
   return [`The largest error is ${small(error)} m; in the verdict before it was ${small(before)} m.`];
 }
 
-function knownBy({ bound_m: bound }) {
+function referenceText({ bound_m: bound }) {
   return `the motion above, whose error is estimated at ${small(bound)} m`;
 }
 
 // What the equations of the right motion contain, with how far the bob is off without it.
 function containedIn({ leftOut, path, gravity }) {
   const items = [];
-  const error = gravity?.isNamed ? gravity.rest : path.max_error_m;
+  const error = gravity?.isNamed ? gravity.residual_m : path.max_error_m;
   for (const [name, text] of Object.entries(CONTAINED)) {
     const size = leftOut?.sizes[name];
     if (size === 0) continue;
     const beside = size > error ? ", more than your error" : "";
     const moved = size === undefined ? "" : ` Without it: off by ${rounded(size, 2)} m up to t = ${leftOut.until} s${beside}.`;
-    items.push(made("li", {}, `${text}.${moved}`));
+    items.push(elementOf("li", {}, `${text}.${moved}`));
   }
-  return ["The right motion contains what programs often leave out:", made("ul", {}, ...items)];
+  return ["The right motion contains what programs often leave out:", elementOf("ul", {}, ...items)];
 }
 
 // What to do about an error that the page does not explain, or not in full.
@@ -301,14 +301,14 @@ async function judgeFiles(chosen) {
   if (!motion?.facts) return;
   const { worker } = motion;
   shown.className = "working";
-  shown.replaceChildren(made("p", { className: "word" }, "Judging …"));
+  shown.replaceChildren(elementOf("p", { className: "word" }, "Judging …"));
   unmark("tolerance", "pendulum");
   const tolerance = at("tolerance").value;
   judgedTolerance = tolerance;
   const result = await worker.ask("judge", { files, tolerance });
   if (worker !== motion.worker) return;
   const { run } = sceneOf(pendulum.texts, fields);
-  const scene = { name: pendulum.title || "this pendulum", end: run.t_end, known: knownBy, bound: "estimated error of the page" };
+  const scene = { name: pendulum.title || "this pendulum", end: run.t_end, reference: referenceText, bound: "estimated error of the page" };
   const notes = result.refused ? [] : [...comparedWithBefore(result), ...result.notes];
   showVerdict(shown, files, { ...result, notes }, scene, furtherSteps(result));
   if (result.mine) player.drop(result.mine, result.path.max_error_m);
@@ -347,7 +347,7 @@ function judgeByChange() {
 
 function save(name, text, type) {
   const address = URL.createObjectURL(new Blob([text], { type }));
-  const link = made("a", { href: address, download: name });
+  const link = elementOf("a", { href: address, download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(address), 1000);
 }

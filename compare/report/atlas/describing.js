@@ -45,8 +45,8 @@ function wrongOf(texts, fields, words) {
   const wrong = {};
   for (const field of fields) {
     if (field.name in texts) {
-      const found = wrongText(texts[field.name], field, words);
-      if (found) wrong[field.name] = found;
+      const mistake = wrongText(texts[field.name], field, words);
+      if (mistake) wrong[field.name] = mistake;
     }
   }
   for (const name of KINDS[kindOf(texts)].slice(0, 2)) {

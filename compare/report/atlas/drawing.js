@@ -18,9 +18,9 @@ function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, 
   const [begin, end] = path.covered_s;
   const x = (t) => (LEFT + ((t - begin) / (end - begin || 1)) * (wide - LEFT - 10)).toFixed(1);
   const y = (error) => (TOP + ((high - Math.log10(Math.max(error, floor))) / (high - low)) * (TALL - TOP - BOTTOM)).toFixed(1);
-  const every = Math.ceil((high - low) / 6);
+  const spacing = Math.ceil((high - low) / 6);
   const parts = [];
-  for (let n = low; n <= high; n += every) {
+  for (let n = low; n <= high; n += spacing) {
     parts.push(`<path class="rule" d="M${LEFT} ${y(10 ** n)}H${wide - 10}"/>`);
     parts.push(`<text x="${LEFT - 6}" y="${Number(y(10 ** n)) + 4}" text-anchor="end">${raised(n)}</text>`);
   }

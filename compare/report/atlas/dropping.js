@@ -27,15 +27,15 @@ function functionMade() {
 // What answers files: a worker that knows the golden data.
 let judging = null;
 function judgingWorker() {
-  judging ??= functionMade().then(async (golden) => {
+  judging ??= functionMade().then(async (goldenFunction) => {
     const worker = startedWorker("judging");
-    await worker.ask("know", { data: page, made: golden });
+    await worker.ask("know", { data: page, goldenFunction });
     return worker;
   });
   return judging;
 }
 
-function heldAgainst({ at_any_time: exact, bound_m: bound }) {
+function referenceText({ at_any_time: exact, bound_m: bound }) {
   if (exact) return `the golden function, which is within ${atMost(bound)} m of the truth at every time (proven)`;
   return `the golden rows, as doubles within ${atMost(bound)} m of the truth`;
 }
@@ -46,11 +46,11 @@ async function take(files) {
   const drop = ++drops;
   const names = last.map((file) => file.name).join(" and ");
   shown.className = "working";
-  shown.replaceChildren(made("p", { className: "word" }, `Judging ${names} …`));
+  shown.replaceChildren(elementOf("p", { className: "word" }, `Judging ${names} …`));
   const worker = await judgingWorker();
   const result = await worker.ask("judge", { files: last, tolerance: tolerance.value });
   if (drop !== drops) return;
-  const scene = { name: page.id, end: page.t_end, known: heldAgainst, bound: "bound of the truth" };
+  const scene = { name: page.id, end: page.t_end, reference: referenceText, bound: "bound of the truth" };
   showVerdict(shown, last, result, scene, page.missing ? [page.missing] : []);
   if (result.mine) player.drop(result.mine, result.path.max_error_m);
 }

@@ -104,8 +104,10 @@ def _released(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
 
 
 def _momentum(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
-    n, v, turn = numbers[:3], numbers[3:6], numbers[6:]
-    return _MOMENTUM.start(tuple(n), tuple(v), Constants(turn=(0, *turn)), functions)[3:]
+    n = tuple(numbers[:3])
+    v = tuple(numbers[3:6])
+    turn = (0, *numbers[6:])
+    return _MOMENTUM.start(n, v, Constants(turn=turn), functions)[3:]
 
 
 def _centrifugal(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:

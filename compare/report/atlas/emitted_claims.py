@@ -51,9 +51,9 @@ def _meanings_of_g() -> dict[str, dict[str, str]]:
     meanings = {}
     for meaning in get_args(GravityIs):
         (other,) = {*get_args(GravityIs)} - {meaning}
-        said, _, _ = _SAID_OF_G[meaning].partition(" (--set")
-        told = " ".join(map(_on_the_page, _ADVICE_ON_G[meaning]))
-        meanings[meaning] = {"other": other, "said": said, "advice": told}
+        statement, _, _ = _SAID_OF_G[meaning].partition(" (--set")
+        advice = " ".join(map(_on_the_page, _ADVICE_ON_G[meaning]))
+        meanings[meaning] = {"other": other, "said": statement, "advice": advice}
     return meanings
 
 

@@ -7,28 +7,33 @@ const AXIS_DIGITS = 10; // of the distance from the Earth's axis: a millimetre
 
 const distancesOf = (columns) => columns[0].map((_, row) => Math.hypot(...columns.map((values) => values[row])));
 
-// What is to be said if the meaning explains the file, or leaves little of the error: {text, advice, rest in m, isNamed,
-// explains, helps}, where `helps` says that less is left with it; null if the page knows no motion with it.
+// What is to be said if the meaning explains the file, or leaves little of the error: {text, advice, residual_m, isNamed,
+// explains, helps}, where `helps` says that the residual is smaller with it; null if the page knows no motion with it.
 function gravityTrial({ names, times, printed, golden, allowed, resolution }, truth) {
   const other = truth.otherGravity?.();
   if (!other) return null;
   const states = times.map((time) => other.at(Math.min(time, truth.end)));
   const errors = names.map((name) => lessThan(printed[name], golden[name]));
-  const left = names.map((name) => lessThan(printed[name], states.map((state) => state[POSITION.indexOf(name)])));
+  const residuals = names.map((name) => {
+    const place = POSITION.indexOf(name);
+    return lessThan(printed[name], states.map((state) => state[place]));
+  });
 
   const error = rootMeanSquare(distancesOf(errors));
-  const rest = rootMeanSquare(distancesOf(left));
-  const largestLeft = farthest(distancesOf(left));
-  const explains = largestLeft <= allowed;
-  const leavesLittle = explains || NEEDED ** 2 * rest <= error;
-  const isHarmless = left.every((values, i) => farthest(values) <= RIVAL * Math.max(farthest(errors[i]), resolution));
-  const need = error / Math.max(rest, resolution); // times as much is left without it
+  const distances = distancesOf(residuals);
+  const residual = rootMeanSquare(distances);
+  const largestResidual = farthest(distances);
+  const explains = largestResidual <= allowed;
+  const leavesLittle = explains || NEEDED ** 2 * residual <= error;
+  const isHarmless = residuals.every((values, i) => farthest(values) <= RIVAL * Math.max(farthest(errors[i]), resolution));
+  const need = error / Math.max(residual, resolution); // by which the residual is larger without it
 
   const { said, advice } = MEANINGS_OF_G[other.is];
+  const hedge = need < NEEDED ? LIKE_ONE_THAT : "";
   return {
-    text: `Your program ${need < NEEDED ? LIKE_ONE_THAT : ""}${said}: ${correctedTo(largestLeft, allowed)}`,
+    text: `Your program ${hedge}${said}: ${correctedTo(largestResidual, allowed)}`,
     advice: advice.replace("{axis}", shortNumber(truth.axis_m, AXIS_DIGITS)),
-    rest: largestLeft,
+    residual_m: largestResidual,
     isNamed: leavesLittle && isHarmless && need >= RIVAL,
     explains,
     helps: need >= RIVAL,

@@ -20,9 +20,9 @@ function product(a, b, k) {
 // Sine and cosine of an angle in degrees, exact where they are 0 or 1.
 function circle(degrees) {
   const quarter = Math.round(degrees / 90);
-  const rest = ((degrees - 90 * quarter) * Math.PI) / 180;
-  const sin = Math.sin(rest);
-  const cos = Math.cos(rest);
+  const angle = ((degrees - 90 * quarter) * Math.PI) / 180;
+  const sin = Math.sin(angle);
+  const cos = Math.cos(angle);
   const turned = [[sin, cos], [cos, -sin], [-sin, -cos], [-cos, sin]];
   return turned[((quarter % 4) + 4) % 4].map((value) => value + 0);
 }

@@ -24,15 +24,16 @@ function doubles(base64) {
 }
 
 // Unpack the numbers once, and those of the golden function; null where only the rows are known.
-function unpacked(truth, made = truth.function) {
+function unpacked(truth, goldenFunction = truth.function) {
   const grid = Object.fromEntries(Object.entries(truth.grid).map(([name, text]) => [name, doubles(text)]));
   const transits = truth.transits && { t: doubles(truth.transits.t), weight: doubles(truth.transits.weight) };
-  return { ...truth, grid, transits, ...functionOf(made) };
+  return { ...truth, grid, transits, ...functionOf(goldenFunction) };
 }
 
-function functionOf(made) {
-  if (!made) return { at: null };
-  return { at: evaluator(made.record, numbersOf(made.coefficients)), end: made.end, bounds: made.record.bounds };
+function functionOf(goldenFunction) {
+  if (!goldenFunction) return { at: null };
+  const { record, coefficients, end } = goldenFunction;
+  return { at: evaluator(record, numbersOf(coefficients)), end, bounds: record.bounds };
 }
 
 // Index of the number in an increasing array that is nearest to a value.
@@ -54,14 +55,15 @@ const picked = (columns, rows) => Object.fromEntries(Object.entries(columns).map
 // off such a time has the state there, moved on by its velocity.
 function truthAt(t, { grid, grid_step: step, omega, at, end }) {
   const within = SAME_TIME * Math.min(step, omega ? 1 / omega : step);
-  const [rows, golden] = [[], Object.fromEntries(STATE.map((name) => [name, []]))];
+  const rows = [];
+  const golden = Object.fromEntries(STATE.map((name) => [name, []]));
   let before = -1;
   t.forEach((time, row) => {
     const i = at ? row : nearest(grid.t, time);
-    const known = at ? Math.min(time, end) : grid.t[i];
-    const gap = time - known;
+    const goldenTime = at ? Math.min(time, end) : grid.t[i];
+    const gap = time - goldenTime;
     if (Math.abs(gap) > within || i === before) return;
-    const state = at ? at(known) : STATE.map((name) => grid[name][i]);
+    const state = at ? at(goldenTime) : STATE.map((name) => grid[name][i]);
     STATE.forEach((name, k) => golden[name].push(k < 3 && gap ? state[k] + gap * state[k + 3] : state[k]));
     rows.push(row);
     before = i;
@@ -82,9 +84,9 @@ function judgedRows(columns, truth) {
     const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : `Leave later rows out.${clock}`;
     throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
   }
-  const known = truthAt(t, truth);
+  const judged = truthAt(t, truth);
   const within = SAME_TIME * Math.min(step, truth.omega ? 1 / truth.omega : step);
-  if (known.rows.some((row) => t[row] > (truth.at ? 0 : within))) return known;
+  if (judged.rows.some((row) => t[row] > (truth.at ? 0 : within))) return judged;
   if (truth.at) throw new Unreadable("No row after t = 0: the file says nothing of the motion.");
   const offsets = t.filter((time) => time > 0).map((time) => time - grid.t[nearest(grid.t, time)]);
   const shift = offsets[0] ?? 0;
@@ -106,10 +108,10 @@ function errorsOf(columns, { rows, golden }) {
   return { components, position, t: Float64Array.from(rows, (row) => columns.t[row]) };
 }
 
-// The end of a sentence on a mistake: the error that is left without it, in tolerances too if it is more than one.
-function correctedTo(rest, allowed) {
-  const beyond = rest > allowed ? `, ${shortNumber(rest / allowed, 2)} tolerances: something else is wrong too` : "";
-  return `corrected, the error is ${rest.toPrecision(2)} m${beyond}.`;
+// The end of a sentence on a mistake: the error without it, in tolerances too if it is more than one.
+function correctedTo(residual_m, allowed) {
+  const beyond = residual_m > allowed ? `, ${shortNumber(residual_m / allowed, 2)} tolerances: something else is wrong too` : "";
+  return `corrected, the error is ${residual_m.toPrecision(2)} m${beyond}.`;
 }
 
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
@@ -236,14 +238,17 @@ function firstWrongPlace(error) {
 function suspicions(columns, { rows, golden }, errors, truth, allowed) {
   const { words } = truth;
   const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
-  const explained = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(rest, allowed)}`] : []);
+  function explained(texts, residual_m) {
+    if (residual_m > enough) return [];
+    return [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(residual_m, allowed)}`];
+  }
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
       if (!unit && !axes) continue;
       const plane = [columns.x, columns.y];
-      const left = (row, i) => Math.hypot(xSign * size * plane[first][row] - golden.x[i], ySign * size * plane[second][row] - golden.y[i]);
-      if (rows.some((row, i) => left(row, i) > enough)) continue;
-      return explained([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], most(rows.map(left)));
+      const residual = (row, i) => Math.hypot(xSign * size * plane[first][row] - golden.x[i], ySign * size * plane[second][row] - golden.y[i]);
+      if (rows.some((row, i) => residual(row, i) > enough)) continue;
+      return explained([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], most(rows.map(residual)));
     }
   }
   const { vx, vy, vz } = golden;
@@ -252,8 +257,8 @@ function suspicions(columns, { rows, golden }, errors, truth, allowed) {
   const late = -vx.reduce((sum, u, i) => sum + u * ex[i] + vy[i] * ey[i], 0) / square;
   const ez = errors.components.z;
   const height = (i) => (ez ? ez[i] + late * vz[i] : 0);
-  const rest = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], height(i))));
-  return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
+  const residual_m = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], height(i))));
+  return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], residual_m) : [];
 }
 
 // The unit in which times are meant: the rows, their times in it, are within 2 % of the truth; a sentence or none.
@@ -261,17 +266,17 @@ function unitOfTime(columns, truth, allowed = Infinity) {
   const { words, amplitude_m: amplitude } = truth;
   const each = Math.ceil(columns.t.length / SAMPLE);
   for (const [unit, text] of Object.entries(words.TIMES_SAID)) {
-    const left = (rows) => {
+    const residualOf = (rows) => {
       const mine = picked(columns, rows);
       mine.t = mine.t.map((time) => time * ratio(words.TIMES[unit]));
       if (mine.t[mine.t.length - 1] > truth.t_end + truth.grid_step) return Infinity;
-      const known = truthAt(mine.t, truth);
-      return known.rows.length > 2 ? most(errorsOf(mine, known).position) : Infinity;
+      const judged = truthAt(mine.t, truth);
+      return judged.rows.length > 2 ? most(errorsOf(mine, judged).position) : Infinity;
     };
     const all = [...columns.t.keys()];
-    if (each > 1 && truth.at && left(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
-    const rest = left(all);
-    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(rest, allowed)}`];
+    if (each > 1 && truth.at && residualOf(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
+    const residual_m = residualOf(all);
+    if (residual_m <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(residual_m, allowed)}`];
   }
   return [];
 }

@@ -78,7 +78,7 @@ function observedCase(columns, judged, truth, allowed) {
     golden,
     length: truth.length_m,
     allowed: enough,
-    left: Math.max(Math.min(enough, error / NEEDED), noise), // at most, by a map that is named
+    residualLimit: Math.max(Math.min(enough, error / NEEDED), noise), // of a map that is named
     resolution: Math.max(noise, FINEST * allowed),
   };
 }
@@ -99,8 +99,8 @@ function heightMoved(shift, { length, allowed }) {
 
 // The maps of one column: {text, columns: {name: values}, price}.
 
-function columnMaps(found, name) {
-  const { names, printed: all, golden, resolution, times } = found;
+function columnMaps(fileCase, name) {
+  const { names, printed: all, golden, resolution, times } = fileCase;
   const printed = all[name];
   const right = golden[name];
   const map = (text, values, price = 1) => ({ text, columns: { [name]: values }, price });
@@ -122,51 +122,51 @@ function columnMaps(found, name) {
   const size = rootMeanSquare(right);
   if (Math.min(Math.abs(factor), Math.abs(factor + 1)) * size > RIVAL * resolution) {
     const scaled = right.map((value) => factor * value);
-    const number = fittedNumber(factor, uncertaintyOf(lessThan(printed, scaled), found) / size);
+    const number = fittedNumber(factor, uncertaintyOf(lessThan(printed, scaled), fileCase) / size);
     maps.push(map(`prints ${name} times ${number.text}`, scaled, 1 + number.price));
   }
 
   const shift = mean(lessThan(printed, right));
   const moved = right.map((value) => value + shift);
-  const number = fittedNumber(shift, uncertaintyOf(lessThan(printed, moved), found));
-  const added = name === "z" ? heightMoved(shift, found) : `prints ${name} with ${number.text} m added to it`;
+  const number = fittedNumber(shift, uncertaintyOf(lessThan(printed, moved), fileCase));
+  const added = name === "z" ? heightMoved(shift, fileCase) : `prints ${name} with ${number.text} m added to it`;
   maps.push(map(added, moved, 1 + number.price));
 
   for (const count of isEven(times) ? LATE_ROWS : []) {
     const late = printed.map((value, i) => right[i - count] ?? value);
-    const said = Math.abs(count) === 1 ? "one row" : `${Math.abs(count)} rows`;
-    if (printed.length > Math.abs(count)) maps.push(map(`prints ${name} ${said} ${count > 0 ? "late" : "early"}`, late));
+    const shiftText = Math.abs(count) === 1 ? "one row" : `${Math.abs(count)} rows`;
+    if (printed.length > Math.abs(count)) maps.push(map(`prints ${name} ${shiftText} ${count > 0 ? "late" : "early"}`, late));
   }
   return maps;
 }
 
 // The maps of x and y together: scaled, turned, moved.
 
-function planeMaps(found) {
-  const { printed, golden } = found;
+function planeMaps(fileCase) {
+  const { printed, golden } = fileCase;
   const [x, y] = [golden.x, golden.y];
   const square = inProduct(x, x) + inProduct(y, y);
   const along = (inProduct(x, printed.x) + inProduct(y, printed.y)) / square;
   const across = (inProduct(x, printed.y) - inProduct(y, printed.x)) / square;
   const size = Math.sqrt(square / x.length);
 
-  const made = (a, b, c = 0, d = 0) => ({
+  const transformed = (a, b, c = 0, d = 0) => ({
     x: x.map((value, i) => a * value - b * y[i] + c),
     y: y.map((value, i) => a * value + b * x[i] + d),
   });
   const residual = (map) => {
     const squares = lessThan(printed.x, map.x).map((value, i) => Math.hypot(value, printed.y[i] - map.y[i]));
-    return uncertaintyOf(squares, found);
+    return uncertaintyOf(squares, fileCase);
   };
   const inDegrees = 180 / Math.PI;
   const maps = [];
 
-  const scaled = made(along, 0);
+  const scaled = transformed(along, 0);
   const scale = fittedNumber(along, residual(scaled) / size);
   maps.push({ text: `prints x and y times ${scale.text}`, columns: scaled, price: 1 + scale.price });
 
   const turn = Math.atan2(across, along);
-  const turned = made(Math.cos(turn), Math.sin(turn));
+  const turned = transformed(Math.cos(turn), Math.sin(turn));
   const doubt = residual(turned) / size;
   const radians = fittedNumber(turn, doubt);
   const degrees_ = fittedNumber(turn * inDegrees, doubt * inDegrees);
@@ -175,12 +175,12 @@ function planeMaps(found) {
   maps.push({ text: turnedText, columns: turned, price: 1 + radians.price * degrees_.price });
 
   const [east, north] = ["x", "y"].map((name) => mean(lessThan(printed[name], golden[name])));
-  const moved = made(1, 0, east, north);
+  const moved = transformed(1, 0, east, north);
   const [right, up] = [east, north].map((value) => fittedNumber(value, residual(moved)));
   const movedText = `prints x and y with ${right.text} m and ${up.text} m added to them`;
   maps.push({ text: movedText, columns: moved, price: 2 + right.price + up.price });
 
-  const both = made(along, across);
+  const both = transformed(along, across);
   const close = residual(both) / size;
   const length = fittedNumber(Math.hypot(along, across), close);
   const round = fittedNumber(turn * inDegrees, close * inDegrees);
@@ -192,29 +192,29 @@ function planeMaps(found) {
 const residualsOf = ({ printed }, { columns }) => Object.keys(columns).flatMap((name) => lessThan(printed[name], columns[name]));
 
 // The cheapest of the maps that make their columns: several if they fit as well.
-function bestMaps(found, maps) {
-  const { resolution, left: leftAtMost } = found;
-  const left = maps.map((map) => residualsOf(found, map));
-  const sizes = left.map((residuals) => Math.max(rootMeanSquare(residuals), resolution));
+function bestMaps(fileCase, maps) {
+  const { resolution, residualLimit } = fileCase;
+  const residuals = maps.map((map) => residualsOf(fileCase, map));
+  const sizes = residuals.map((values) => Math.max(rootMeanSquare(values), resolution));
   const most = RIVAL * sizes.reduce((least, size) => Math.min(least, size), Infinity);
-  const near = maps.filter((_, i) => sizes[i] <= most && farthest(left[i]) <= leftAtMost);
+  const near = maps.filter((_, i) => sizes[i] <= most && farthest(residuals[i]) <= residualLimit);
   const price = near.reduce((least, map) => Math.min(least, map.price), Infinity);
   return near.filter((map) => map.price === price);
 }
 
 const priceOf = (groups) => groups.reduce((total, maps) => total + (maps.length ? maps[0].price : Infinity), 0);
 
-// What a right program's columns were mapped by: {texts, rest in m}; null if no map made all wrong columns.
-function observation(found, truth) {
-  const { names, printed, golden, allowed, times } = found;
+// What a right program's columns were mapped by: {texts, residual_m}; null if no map explains all wrong columns.
+function observation(fileCase, truth) {
+  const { names, printed, golden, allowed, times } = fileCase;
   const wrong = names.filter((name) => farthest(lessThan(printed[name], golden[name])) > allowed);
   if (!wrong.length || times[times.length - 1] * truth.omega < 2 * Math.PI) return null;
 
-  const separate = wrong.map((name) => bestMaps(found, columnMaps(found, name)));
+  const separate = wrong.map((name) => bestMaps(fileCase, columnMaps(fileCase, name)));
   let groups = separate;
   if (wrong.includes("x") && wrong.includes("y")) {
     const others = separate.filter((_, i) => wrong[i] === "z");
-    const together = [bestMaps(found, planeMaps(found)), ...others];
+    const together = [bestMaps(fileCase, planeMaps(fileCase)), ...others];
     if (priceOf(together) < priceOf(separate)) groups = together;
   }
   const price = priceOf(groups);
@@ -223,24 +223,25 @@ function observation(found, truth) {
 
   const texts = groups.map((maps) => (maps.length > 1 ? "either " : "") + maps.map((map) => map.text).join(", or "));
   const mended = Object.assign({}, golden, ...groups.map(([map]) => map.columns));
-  const rest = names.map((name) => lessThan(printed[name], mended[name]));
-  return { texts, rest: farthest(times.map((_, i) => Math.hypot(...rest.map((values) => values[i])))) };
+  const residuals = names.map((name) => lessThan(printed[name], mended[name]));
+  const distances = times.map((_, i) => Math.hypot(...residuals.map((values) => values[i])));
+  return { texts, residual_m: farthest(distances) };
 }
 
-// A clock that runs faster or slower than its motion, fitted to more and more rows: {text, rest}, or null.
-function clockRate({ names, times, printed, left, resolution }, truth) {
+// A clock that runs faster or slower than its motion, fitted to more and more rows: {text, residual_m}, or null.
+function clockRate({ names, times, printed, residualLimit, resolution }, truth) {
   if (!truth.at || times.length < FIRST_ROWS) return null;
   let rate = 1; // of the motion, over that of the clock
 
   // of the first rows, those for which the motion is known
   const statesAt = (count) => times.slice(0, count).filter((time) => time * rate <= truth.end).map((time) => truth.at(time * rate));
   const places = names.map((name) => POSITION.indexOf(name));
-  const missed = (state, row) => names.map((name, k) => printed[name][row] - state[places[k]]);
+  const rowErrors = (state, row) => names.map((name, k) => printed[name][row] - state[places[k]]);
   for (let count = FIRST_ROWS; ; count = Math.min(2 * count, times.length)) {
     for (let step = 0; step < CLOCK_STEPS; step += 1) {
       let [above, below] = [0, 0];
       statesAt(count).forEach((state, row) => {
-        missed(state, row).forEach((error, k) => {
+        rowErrors(state, row).forEach((error, k) => {
           const slope = times[row] * state[3 + places[k]];
           above += slope * error;
           below += slope * slope;
@@ -253,36 +254,36 @@ function clockRate({ names, times, printed, left, resolution }, truth) {
   }
 
   const states = statesAt(times.length);
-  const rest = farthest(states.map((state, row) => Math.hypot(...missed(state, row))));
+  const residual_m = farthest(states.map((state, row) => Math.hypot(...rowErrors(state, row))));
   const speed = rootMeanSquare(states.map((state, row) => times[row] * Math.hypot(state[3], state[4])));
-  if (rest > left || !speed) return null;
-  const value = fittedNumber(1 / rate, Math.max(rest, resolution) / speed);
-  return { text: CLOCK_SAID.replace("{value}", value.text), rest };
+  if (residual_m > residualLimit || !speed) return null;
+  const value = fittedNumber(1 / rate, Math.max(residual_m, resolution) / speed);
+  return { text: CLOCK_SAID.replace("{value}", value.text), residual_m };
 }
 
 // Whether a clock is likelier than the other meaning of g, which has no fitted number; as `likelier` of
 // compare/diagnosis/claims.py.
 function isLikelier(clock, gravity, { resolution }) {
   if (!gravity?.isNamed || !gravity.explains) return true;
-  return NEEDED * Math.max(clock.rest, resolution) < gravity.rest;
+  return NEEDED * Math.max(clock.residual_m, resolution) < gravity.residual_m;
 }
 
 // What the rows themselves show, as mistakesIn returns it: maps of columns, the other meaning of g, a clock.
 function observed(columns, judged, truth, allowed) {
-  const found = observedCase(columns, judged, truth, allowed);
-  const unjudged = `no more than ${shortNumber(found.noise, 1)} of its unit can be judged`;
-  const rounded = found.noise > allowed ? [`Your file prints ${found.decimals} decimals: ${unjudged}.`] : [];
-  const maps = observation(found, truth);
+  const fileCase = observedCase(columns, judged, truth, allowed);
+  const unjudged = `no more than ${shortNumber(fileCase.noise, 1)} of its unit can be judged`;
+  const rounded = fileCase.noise > allowed ? [`Your file prints ${fileCase.decimals} decimals: ${unjudged}.`] : [];
+  const maps = observation(fileCase, truth);
   if (maps) {
-    const text = `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.rest, allowed)}`;
-    return { notes: [...rounded, text], explained: maps.rest <= allowed, isNamed: true };
+    const text = `Your file ${maps.texts.join(", and it ")}: ${correctedTo(maps.residual_m, allowed)}`;
+    return { notes: [...rounded, text], explained: maps.residual_m <= allowed, isNamed: true };
   }
-  const gravity = gravityTrial(found, truth);
-  const clock = clockRate(found, truth);
-  if (clock && isLikelier(clock, gravity, found)) {
+  const gravity = gravityTrial(fileCase, truth);
+  const clock = clockRate(fileCase, truth);
+  if (clock && isLikelier(clock, gravity, fileCase)) {
     const alike = "A step error may look alike: the command tells more.";
-    const text = `Perhaps your program ${clock.text}: ${correctedTo(clock.rest, allowed)} ${alike}`;
-    return { notes: [...rounded, text], explained: clock.rest <= allowed, isNamed: true };
+    const text = `Perhaps your program ${clock.text}: ${correctedTo(clock.residual_m, allowed)} ${alike}`;
+    return { notes: [...rounded, text], explained: clock.residual_m <= allowed, isNamed: true };
   }
   const notes = gravity?.isNamed ? [...rounded, gravity.text, gravity.advice] : rounded;
   return { notes, explained: Boolean(gravity?.isNamed && gravity.explains), gravity };

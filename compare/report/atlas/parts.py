@@ -73,29 +73,34 @@ def state(golden: Golden) -> Html:
 
 def certificate(golden: Golden) -> Mapping[str, str]:
     """Return bound, level, the evidence for it, and the transits, by name."""
-    manifest, bounds = golden.manifest, golden.manifest.bounds
-    behind = [MEANING[manifest.level]]
+    manifest = golden.manifest
+    bounds = manifest.bounds
+    evidence = [MEANING[manifest.level]]
     if manifest.enclosure is not None:
         proof = manifest.enclosure
         theorem = _THEOREMS.get(proof.method, proof.method)
-        behind.append(
+        evidence.append(
             f"Before rounding every position is known to {proof.position_radius_m} m ({theorem}); "
             f"the run agrees with it to {proof.agreement_bits} bits."
         )
-    behind += [
+    evidence += [
         f"A run in {check.number}, formulation {check.formulation}, differs by {check.position_m} m at most."
         for check in manifest.cross_checks
     ]
     count = manifest.counts.transits
-    within = f", each within {bounds.transit_s} s" if bounds.transit_s else ""
-    none = f"none: {manifest.transits}".removesuffix(": complete")
+    if count:
+        transits = f"{count} ({manifest.transits})"
+        if bounds.transit_s:
+            transits += f", each within {bounds.transit_s} s"
+    else:
+        transits = f"none: {manifest.transits}".removesuffix(": complete")
     return {
         "inputs": f"read as {manifest.inputs}",
         "level": f"{manifest.level}, {manifest.digits} digits",
-        "behind it": " ".join(behind),
+        "behind it": " ".join(evidence),
         "bounds": f"positions {bounds.position_m} m, velocities {bounds.velocity_m_s} m/s",
         "rows": f"{manifest.counts.grid} golden times",
-        "transits": f"{count} ({manifest.transits}){within}" if count else none,
+        "transits": transits,
         "made by": manifest.command,
         "seal": manifest.seal,
     }

@@ -53,14 +53,14 @@ function split(text, separator, vocabulary) {
 // The separators under which most fields of a line are numbers, the likeliest first.
 function possibleSeparators(line, vocabulary) {
   const isOne = (field) => isNumber(field, vocabulary) || isClock(field, vocabulary) || whole(vocabulary.HEXFLOAT, "i").test(field);
-  const found = [];
+  const candidates = [];
   for (const separator of vocabulary.SEPARATORS) {
     if (!line.includes(separator)) continue;
     const fields = split(line, separator, vocabulary).filter((field) => !isMissing(field, vocabulary));
     const share = fields.filter(isOne).length / Math.max(1, fields.length);
-    if (share > 0.5) found.push({ separator, share });
+    if (share > 0.5) candidates.push({ separator, share });
   }
-  return found.sort((one, other) => other.share - one.share).map(({ separator }) => separator);
+  return candidates.sort((one, other) => other.share - one.share).map(({ separator }) => separator);
 }
 
 function withoutEnd(fields) {
@@ -199,12 +199,12 @@ function bareUnit(printed, vocabulary) {
 
 // The units of a line that holds nothing else, one for each word; undefined for another line.
 function unitsOf(words, vocabulary) {
-  const found = words.map((word) => bareUnit(word, vocabulary));
-  const known = found.map((unit) => ["t", "x", "vx"].some((column) => sizeOf(unit, column, vocabulary)));
-  const others = found.map((unit) => !unit || vocabulary.OTHER_UNITS.includes(plainUnit(unit, vocabulary)));
+  const units = words.map((word) => bareUnit(word, vocabulary));
+  const isOfColumn = (unit) => ["t", "x", "vx"].some((column) => sizeOf(unit, column, vocabulary));
+  const isOtherUnit = (unit) => !unit || vocabulary.OTHER_UNITS.includes(plainUnit(unit, vocabulary));
+  if (!units.every((unit) => isOfColumn(unit) || isOtherUnit(unit))) return undefined;
   const typed = words.some((word) => vocabulary.TYPES.includes(unquoted(word).toLowerCase()));
-  const all = known.every((one, i) => one || others[i]);
-  return all && (known.some(Boolean) || typed) ? found : undefined;
+  return units.some(isOfColumn) || typed ? units : undefined;
 }
 
 const sameSize = (one, other) => one[0] * other[1] === other[0] * one[1];
@@ -293,7 +293,7 @@ function headerOf(lines, least, most, needed, vocabulary) {
     const fitting = [...counts].filter((count) => least <= count && count <= most).sort((one, other) => other - one);
     const below = first >= 0 && i > first;
     if (below && fitting.some((count) => complete[first].has(count) && lineOfUnits(lines[i], count, vocabulary))) continue;
-    const count = fitting.find((one) => complete[i].has(one)) ?? least;
+    const count = fitting.find((fields) => complete[i].has(fields)) ?? least;
     const header = namedBy(lines[i], count, needed, vocabulary);
     if (header) return { i, header };
   }
@@ -303,14 +303,14 @@ function headerOf(lines, least, most, needed, vocabulary) {
 // The units in the line below the header in line `i`, or in that above it; none if neither has any.
 function unitsBeside(lines, i, count, vocabulary) {
   const beside = lines.filter((_, k) => k > i || k === i - 1);
-  const found = beside.map((line) => lineOfUnits(line, count, vocabulary)).filter(Boolean);
-  const other = found.find((units) => units.join() !== found[0].join());
-  if (other) throw new Unreadable(`There are two lines of units, ${found[0].join(", ")} and ${other.join(", ")}: leave one out.`);
-  if (found.length) return found[0];
+  const [first, ...others] = beside.map((line) => lineOfUnits(line, count, vocabulary)).filter(Boolean);
+  const other = others.find((units) => units.join() !== first.join());
+  if (other) throw new Unreadable(`There are two lines of units, ${first.join(", ")} and ${other.join(", ")}: leave one out.`);
+  if (first) return first;
   for (const line of lines) {
     const label = pattern(`^${vocabulary.UNITS_LABEL}`, "i").exec(line.text);
-    const rest = (label ? line.text.slice(label[0].length) : line.text).replace(/^[ \t,;|]+|[ \t,;|]+$/g, "");
-    const words = rest.split(/[\s,;|]+/);
+    const unlabelled = label ? line.text.slice(label[0].length) : line.text;
+    const words = unlabelled.replace(/^[ \t,;|]+|[ \t,;|]+$/g, "").split(/[\s,;|]+/);
     const units = (label || !line.comment || words.length > 1) && unitsOf(words, vocabulary);
     if (units && units.some((unit) => !vocabulary.SI_UNITS.includes(unit))) {
       throw new Unreadable(`Line ${line.number} names units, but not one for each column: write them into the header.`);
@@ -339,9 +339,9 @@ function refuseOtherComment(lines, names, count, needed, vocabulary) {
 function layoutAbove(lines, row, separator, number, needed, vocabulary) {
   const fields = split(row, separator, vocabulary);
   const least = withoutEnd(fields).length;
-  const found = headerOf(lines, least, fields.length, needed, vocabulary);
-  if (found) {
-    const { i, header } = found;
+  const placed = headerOf(lines, least, fields.length, needed, vocabulary);
+  if (placed) {
+    const { i, header } = placed;
     const width = header.length;
     if (width < least || width > fields.length) {
       const commas = separator === "," && width < least && least <= 2 * width ? ` ${vocabulary.COMMAS}` : "";
@@ -526,7 +526,7 @@ function withoutLostFrames(columns, numbers, notes, vocabulary) {
   const names = Object.keys(columns);
   const isLost = columns.t.map((_, i) => names.some((name) => name !== "t" && Number.isNaN(columns[name][i])));
   const last = isLost.lastIndexOf(false);
-  const lost = isLost.map((one, i) => one && i < last);
+  const lost = isLost.map((isLostRow, i) => isLostRow && i < last);
   for (const [name, column] of Object.entries(columns)) {
     const row = column.findIndex((value, i) => !lost[i] && !(Math.abs(value) <= vocabulary.LARGEST));
     if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row]).toLowerCase()}. The run failed there.`);
@@ -571,9 +571,10 @@ function readColumns(text, needed, vocabulary, onComment = () => {}) {
   if (isClock(fields[0][0], vocabulary)) {
     const { factor } = reading.places.t;
     if (factor[0] !== factor[1]) throw new Unreadable(`The unit of t says that it is a number, and it is ${fields[0][0]}.`);
-    const made = clockTimes(fields[0], numbers, needed.length === 1, vocabulary);
-    conventions.push(made.convention);
-    [times, clock] = [made.times, made.start];
+    const counted = clockTimes(fields[0], numbers, needed.length === 1, vocabulary);
+    conventions.push(counted.convention);
+    times = counted.times;
+    clock = counted.start;
   }
   const written = times ? fields.slice(1) : fields;
   const clockLate = times ? -1 : fields[0].findIndex((field) => !isNumber(field, vocabulary));

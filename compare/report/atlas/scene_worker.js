@@ -4,8 +4,8 @@
 if (typeof WorkerGlobalScope !== "undefined") {
   let truth = null;
 
-  function know({ data, made }) {
-    truth = unpacked(data, made);
+  function know({ data, goldenFunction }) {
+    truth = unpacked(data, goldenFunction);
   }
 
   const judge = async ({ files, tolerance }) => answer(await textsOf(files), tolerance, truth);

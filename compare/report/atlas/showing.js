@@ -2,16 +2,16 @@
 "use strict";
 
 // An element with properties and children, which are texts or elements.
-function made(name, properties = {}, ...children) {
+function elementOf(name, properties = {}, ...children) {
   const element = Object.assign(document.createElement(name), properties);
   element.append(...children);
   return element;
 }
 
 // The names and descriptions of a list; a description is a text or several children.
-function factsMade(rows) {
-  const items = rows.flatMap(([name, ...value]) => [made("dt", {}, name), made("dd", {}, ...value.flat())]);
-  return made("dl", {}, ...items);
+function factList(rows) {
+  const items = rows.flatMap(([name, ...value]) => [elementOf("dt", {}, name), elementOf("dd", {}, ...value.flat())]);
+  return elementOf("dl", {}, ...items);
 }
 
 // A number with its digits, the first wrong one marked.
@@ -19,20 +19,20 @@ function marked(value, place) {
   const digits = value.toFixed(Math.min(Math.max(place + 3, 1), 17));
   const at = digits.indexOf(".") + place + (place > 0 ? 0 : -1);
   if (at < 0 || !/\d/.test(digits[at] ?? "")) return [digits];
-  return [digits.slice(0, at), made("mark", {}, digits[at]), digits.slice(at + 1)];
+  return [digits.slice(0, at), elementOf("mark", {}, digits[at]), digits.slice(at + 1)];
 }
 
 // A bound is given 1.005 times as large, so that rounding to three digits does not take from it.
 const atMost = (bound) => small(1.005 * bound);
 
-function pathRows({ path, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude }, end, known) {
+function pathRows({ path, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude }, end, reference) {
   const { worst } = path;
   const place = firstWrongPlace(worst.difference || bound);
   const lastRight = place > 1 ? `decimal ${place - 1}` : "the point at most";
   const rows = [
     ["judged", `${path.rows.toLocaleString("en")} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${end} s`],
     ["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`],
-    ["held against", known],
+    ["held against", reference],
     ["error at the end", `${small(path.end_error_m)} m`],
     ["rms error", `${small(path.rms_error_m)} m`],
     ["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(amplitude)} m`],
@@ -56,7 +56,7 @@ function transitRows({ matched, missed, extra, max_error_s: late, max_conditione
 }
 
 // A picture that drawing.js writes: of numbers alone.
-function pictureMade(svg) {
+function pictureOf(svg) {
   const { documentElement } = new DOMParser().parseFromString(svg, "image/svg+xml");
   return document.importNode(documentElement, true);
 }
@@ -74,29 +74,29 @@ const decidedBy = ({ tolerance_m: tolerance, tolerance_of: of }) =>
 
 function showRefusal(shown, reason) {
   shown.className = "refused";
-  shown.replaceChildren(made("p", { className: "word" }, made("strong", {}, "Not judged")), made("p", {}, reason));
+  shown.replaceChildren(elementOf("p", { className: "word" }, elementOf("strong", {}, "Not judged")), elementOf("p", {}, reason));
 }
 
-// Show a verdict on files in an element. `scene` has its name and end, `known` says by what was judged, and
+// Show a verdict on files in an element. `scene` has its name and end, `reference` says by what was judged, and
 // `bound` what its error is called; `notes` follow those of the verdict, each a text or several children.
-function showVerdict(shown, files, result, { name, end, known, bound }, notes = []) {
+function showVerdict(shown, files, result, { name, end, reference, bound }, notes = []) {
   if (result.refused) {
     showRefusal(shown, result.refused);
     return;
   }
-  const rows = result.path ? pathRows(result, end, known(result)) : [];
+  const rows = result.path ? pathRows(result, end, reference(result)) : [];
   if (result.transits) rows.push(...transitRows(result.transits));
-  const items = [...result.notes, ...notes].map((note) => made("li", {}, ...[note].flat()));
+  const items = [...result.notes, ...notes].map((note) => elementOf("li", {}, ...[note].flat()));
   const names = files.map((file) => file.name).join(" and ");
-  const word = made("p", { className: "word" }, made("strong", {}, `${names} ${result.verdict}`), ` with ${name}`);
+  const word = elementOf("p", { className: "word" }, elementOf("strong", {}, `${names} ${result.verdict}`), ` with ${name}`);
   shown.className = result.verdict;
-  const decided = made("p", { className: "faint" }, decidedBy(result));
-  shown.replaceChildren(word, decided, made("ul", {}, ...items), factsMade(rows));
+  const decided = elementOf("p", { className: "faint" }, decidedBy(result));
+  shown.replaceChildren(word, decided, elementOf("ul", {}, ...items), factList(rows));
   if (!result.points) return;
   const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
-  const moving = ["In ", made("a", { href: "#player" }, "the moving picture"), " your bob is the orange one, with its error enlarged as the line below it says."];
+  const moving = ["In ", elementOf("a", { href: "#player" }, "the moving picture"), " your bob is the orange one, with its error enlarged as the line below it says."];
   const help = `How far your bob is from the right one, in m. Below the line “tolerance” it agrees; below “${bound}” nothing can be told. `;
-  shown.append(made("p", { className: "faint" }, help, ...moving), pictureMade(errorPicture(result, wide, bound)));
+  shown.append(elementOf("p", { className: "faint" }, help, ...moving), pictureOf(errorPicture(result, wide, bound)));
 }
 
 // Take the files that are dropped on a zone or chosen.

@@ -51,9 +51,9 @@ function errorOf(first, second, end) {
   const errors = [rounding(0)];
   for (let i = 1; i <= SAMPLES; i += 1) {
     const time = (end * i) / SAMPLES;
-    const one = first.at(time);
-    const other = second.at(time);
-    const gaps = one.map((value, k) => value - other[k]);
+    const state = first.at(time);
+    const otherState = second.at(time);
+    const gaps = state.map((value, k) => value - otherState[k]);
     const phase = swing ? norm(gaps.slice(3)) / swing : 0; // of a bob at its highest point
     const gap = norm(gaps.slice(0, 3)) + phase;
     errors.push(Math.max(errors[i - 1], rounding(time) + CAUTION * gap));
@@ -178,8 +178,8 @@ function answerBy({ scene, truth, facts }, files, tolerance) {
     const isOpen = result.path && result.verdict === "disagrees" && !result.explained;
     return { ...result, leftOut: isOpen ? leftOut(scene, facts.wide, result.path.covered_s[1]) : null };
   }
-  const known = `${facts.error.toPrecision(3)} m`;
+  const accuracy = `${facts.error.toPrecision(3)} m`;
   const allowed = `${result.tolerance_m.toPrecision(3)} m`;
-  const reason = `This page knows the motion to ${known} only, and the tolerance is ${allowed}.`;
+  const reason = `This page knows the motion to ${accuracy} only, and the tolerance is ${allowed}.`;
   return { refused: `${reason} Shorten the run, or use the command.` };
 }

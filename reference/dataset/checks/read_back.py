@@ -147,14 +147,16 @@ def _page(files: DatasetFiles, lines: list[str]) -> Iterator[str]:
         return
     # a title may be the same words
     place = max(k for k, line in enumerate(lines) if line == _INPUTS)
-    head, end = lines[:place], lines[place:]
+    head = lines[:place]
+    end = lines[place:]
     for line in _head(manifest):
         if line not in head:
             yield f"{_PAGE}: its head does not say {line!r}"
 
     counts = manifest.sections.counts if manifest.sections else {}
-    passages = [f"Passages in sections.csv: {count} of {word}" for word, count in counts.items()]
-    if passages != [line for line in end if line.startswith("Passages")]:
+    expected = [f"Passages in sections.csv: {count} of {word}" for word, count in counts.items()]
+    passages = [line for line in end if line.startswith("Passages")]
+    if passages != expected:
         yield f"{_PAGE}: the passages that it counts are not those of sections.csv"
 
 

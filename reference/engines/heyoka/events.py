@@ -82,10 +82,12 @@ def _quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     coefficients, h = stepper.coefficients()
     scaled: list[Any] = [abs((k + 1) * a * h**k) for k, a in enumerate(coefficients[0][1:])]
     # not numbers where h is infinite, as at rest
-    head, tail = scaled[multiplicity], scaled[multiplicity + 1 :]
+    leading = scaled[multiplicity]
+    higher = scaled[multiplicity + 1 :]
     for halvings in range(stepper.number.prec):
         weight = stepper.numbers.power_of_two(-halvings)
-        if head > 2 * sum((b * weight ** (j + 1) for j, b in enumerate(tail)), start=0 * head):
+        terms = (b * weight ** (j + 1) for j, b in enumerate(higher))
+        if leading > 2 * sum(terms, start=0 * leading):
             return Fraction(float(h)) / Fraction(2) ** halvings
     raise IntegrationError("within the working precision, xdot stays zero after t = 0.", AT_REST)
 
@@ -116,9 +118,11 @@ def march(
         stepper.advance(min(stepper.numbers.of(_quiet_start(stepper, multiplicity)), end))
         stepper.sample(times, states)
     steps: list[_Step] = []  # the last one that was checked, and those after it
-    retries, limit = 0, end - stepper.time
+    retries = 0
+    limit = end - stepper.time
     while stepper.time < end:
-        mark, counts = stepper.mark(), (len(states), len(zeros))
+        mark = stepper.mark()
+        counts = len(states), len(zeros)
         stepper.advance(limit)
         step_zeros = sorted(stepper.zeros, key=lambda zero: zero.t)
         directions = [zero.direction for zero in step_zeros]
@@ -126,7 +130,8 @@ def march(
         zeros += step_zeros
         stepper.sample(times, states)
         if len(steps) > _AT_ONCE or retries or stepper.time >= end:
-            if (wrong := _first_contradiction(steps, stepper.numbers)) is not None:
+            wrong = _first_contradiction(steps, stepper.numbers)
+            if wrong is not None:
                 i, contradiction = wrong
                 retries += 1
                 if retries > _MAX_RETRIES:
@@ -134,9 +139,7 @@ def march(
                         f"zeros of xdot near t = {float(steps[i].end)} s: {contradiction}.", AT_REST
                     )
                 limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(_SHORTER**retries)
-                before = steps[max(i - 1, 0)]
-                stepper.back(before.mark)
-                del states[before.states :], zeros[before.zeros :], steps[max(i - 1, 0) :]
+                _take_back(stepper, steps, max(i - 1, 0), states, zeros)
                 continue
             retries = retries if limit < end - mark[0] else 0
             del steps[:-1]
@@ -144,6 +147,17 @@ def march(
         if report is not None:
             report(float(stepper.time))
     return np.array(states, dtype=stepper.numbers.dtype), zeros
+
+
+def _take_back(
+    stepper: Stepper, steps: list[_Step], first: int, states: list[Any], zeros: list[Zero]
+) -> None:
+    """Return to the start of the step `first`, and delete what was recorded since."""
+    step = steps[first]
+    stepper.back(step.mark)
+    del states[step.states :]
+    del zeros[step.zeros :]
+    del steps[first:]
 
 
 def _first_contradiction(steps: Sequence[_Step], numbers: Numbers) -> tuple[int, str] | None:

@@ -84,7 +84,7 @@ def _longest_step(plan: Plan, start: Start) -> Fraction:
 
 def _integers(series: Any) -> tuple[list[int], ...]:
     """Return the coefficients as integers, which costs a sixth of a step."""
-    return tuple([int(c) for c in row] for row in series)
+    return tuple(list(map(int, row)) for row in series)
 
 
 def _next_step(h: Fraction, series: Any, bits: int) -> Fraction:

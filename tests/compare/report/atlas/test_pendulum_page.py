@@ -105,7 +105,7 @@ BEGIN = r"""
 """
 END = r"""
   const all = { ...told, hacked: typeof hacked, violations };
-  document.body.replaceChildren(made("pre", { id: "told" }, JSON.stringify(all)));
+  document.body.replaceChildren(elementOf("pre", { id: "told" }, JSON.stringify(all)));
 })();
 
 // Rows of the motion that is shown, or of a changed one, through a function of x, y and t.
