@@ -412,7 +412,7 @@ def test_a_swing_in_the_meridian_plane_has_no_transits_and_the_separatrix_one() 
         ),
         pytest.param(
             ["separatrix", "--t-end", "2400", "--set", "run.grid_step=10"],
-            "Rounding grows so fast",
+            "Rounding errors grow so fast",
             marks=pytest.mark.long,
         ),
         (
