@@ -180,12 +180,18 @@ class _AmongRivals:
             return
         explained = self.best.explains or not self.best.untyped
         needed = all(self._need(cause) >= NEEDED for cause in differing)
-        # a number that nobody typed takes up a part of any other
-        beside = {cause.id for cause in self.best.untyped_inputs} - {
-            cause.id for cause in differing
-        }
-        certain = self.best.is_sound and explained and needed and not beside
+        certain = self.best.is_sound and explained and needed and not self._takes_up(differing)
         yield from _either(differing, _different(self._alternatives), certain)
+
+    def _takes_up(self, differing: Sequence[Deviation]) -> bool:
+        """Return whether a number that nobody typed stands beside the alternatives, and takes up a part of any other.
+
+        A drift has two such numbers: beside it no alternative has another one.
+        """
+        own = {cause.id for cause in differing}
+        beside = {cause.id for cause in self.best.untyped_inputs} - own
+        has_number = any(hypothesis.untyped_inputs for hypothesis in self._words)
+        return bool(beside) or (self.best.drifts and has_number)
 
     def _sized(self) -> Iterator[Deviation]:
         """Yield the causes that are reported, each with the distance by which it moves the bob."""
