@@ -280,10 +280,11 @@ def _gravity(right: Program) -> Iterator[Cause]:
         yield fitted_number("site.altitude", "earth", text, "altitude", RARE + FITTED, "gravity")
     for g in COMMON_GRAVITY:
         if abs(g - right.g) > 1e-9:
-            yield Cause(f"gravity_{g:g}", "g", f"computes with g = {g:g} m/s²", _set(g=g))
+            text = f"computes with g = {g:g} m/s²"
+            yield Cause(f"gravity_{g:g}", "site.gravity", text, _set(g=g))
     for g in normal_gravities(right.latitude) if right.radius else ():
         text = f"computes with the normal gravity of its latitude, g = {g:.10g} m/s²"
-        yield Cause("gravity_normal", "g", text, _set(g=g))
+        yield Cause("gravity_normal", "site.gravity", text, _set(g=g))
 
 
 def _rotation(right: Program, kind: str) -> Iterator[Cause]:

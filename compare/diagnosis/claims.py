@@ -234,10 +234,13 @@ class _AmongRivals:
     def _is_an_input(self, cause: Deviation) -> bool:
         """Return whether the number of a cause, if it has one, is one that somebody typed.
 
-        A clock is no input: any factor will do, but not beside other numbers that take up what it leaves.
+        A clock is no input: any factor will do, but not beside other numbers that take up what it leaves. Nor is a
+        factor of the rotation rate beside such numbers: a clock makes that as well.
         """
         if cause.stage == "clock":
             return self._untyped <= {cause.id}
+        if cause.id == "rate_factor":
+            return not self.best.untyped_inputs
         return cause.id not in self._untyped or cause.stage == "integrator"
 
     def _in_whole_steps(self, cause: Deviation) -> Deviation:

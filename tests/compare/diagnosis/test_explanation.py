@@ -270,6 +270,8 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         pytest.param(84004, 152, marks=LONG),
         # beside a step error of no name, another g looks like a height of the site or a rotation rate
         (71203, 131),
+        # minutes read as seconds: an Earth that turns 60 times too fast, and a g that nobody types
+        (16993, 177),
     ],
 )
 def test_what_was_once_told_wrongly(mistaken: Path, seed: int, number: int) -> None:
