@@ -394,13 +394,9 @@ def _frames() -> Iterator[Cause]:
 def _latitude(right: Program) -> Iterator[Cause]:
     latitude = right.latitude
     if latitude:
-        yield Cause(
-            "hemisphere",
-            "latitude",
-            "gives the latitude the wrong sign",
-            _set(latitude=-latitude),
-            0.35,
-        )
+        # of a group of its own: another latitude may have the wrong sign as well
+        text = "gives the latitude the wrong sign"
+        yield Cause("hemisphere", "hemisphere", text, _set(latitude=-latitude), 0.35)
         radians = math.degrees(latitude) % 360
         text = "takes the latitude in degrees as if it were in radians"
         yield Cause("radians", "latitude", text, _set(coriolis_latitude=radians))

@@ -426,8 +426,10 @@ def _from_zero(rows: FileRows, release: Array) -> FileRows:
 
 def other_conventions(rows: FileRows, release: Array) -> Iterator[FileRows]:
     """Yield the rows as those of other conventions, between which row 0 does not decide."""
-    if 0 < rows.times[0] < rows.times[-1]:  # a clock that starts late, and a release that is off
-        yield _from_zero(rows, release)
+    shifts = {"rows_late", "rows_early"}
+    as_printed = shifts.isdisjoint(convention.id for convention in rows.conventions)
+    if as_printed and 0 < rows.times[0] < rows.times[-1]:
+        yield _from_zero(rows, release)  # a clock that starts late, and a release that is off
     x, y = release[:2]
     if abs(abs(x) - abs(y)) <= _NEAR * abs(x):
         signs = (1, 1) if x * y > 0 else (-1, -1)

@@ -197,8 +197,8 @@ class Hypothesis(Claim):
         return price
 
     def _has_other_sign(self, cause: Cause) -> bool:
-        """Return whether the number of an input has another sign than the scene's."""
-        if cause.stage == "integrator":
+        """Return whether the number of an input has another sign than the scene's, and no other cause says so."""
+        if cause.stage == "integrator" or "hemisphere" in self.words:
             return False
         scene = float(getattr(self.case.right, cause.free))
         return self.reading.value(cause) * scene < 0

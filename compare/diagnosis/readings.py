@@ -135,11 +135,6 @@ class Reader:
         self, reading: CauseReading, cause: Cause, causes: Sequence[Cause]
     ) -> CauseReading | None:
         """Return a reading with a named cause in place of one with a number; None if none has its number."""
-
-        def with_other(other: Cause, program: Program) -> CauseReading:
-            together = tuple(other if each is cause else each for each in reading.causes)
-            return self._judged(together, program)
-
         value = reading.value(cause)
         same = SAME * abs(value)
         for other in causes:
@@ -148,7 +143,8 @@ class Reader:
             program = other.change(reading.program)
             exact = float(getattr(program, cause.free))
             if exact != value and abs(exact - value) <= same:
-                return with_other(other, program)
+                together = tuple(other if each is cause else each for each in reading.causes)
+                return self._judged(together, program)
         return None
 
     def with_cause(self, reading: CauseReading, cause: Cause) -> CauseReading | None:
@@ -170,10 +166,6 @@ class Reader:
         fitted, _ = adjusted(
             program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint
         )
-        # an Earth that turns the other way is a Coriolis force of the wrong sign, which has a name:
-        # the centrifugal force is the same
-        if fitted.rate * self.right.rate < 0:
-            return None
         return self._judged(together, fitted)
 
     def _with_first_step(
@@ -339,7 +331,10 @@ def adjusted(
 
     def rows_with(values: Array) -> Array:
         moved = program.with_inputs(names, values)
-        return (rows_of(moved) if moved.sensible else np.full_like(goal, np.nan)).ravel()
+        # an Earth that turns the other way is a Coriolis force of the wrong sign, a cause of its own:
+        # the centrifugal force has the square of the rate
+        is_allowed = moved.sensible and moved.rate * program.rate >= 0
+        return (rows_of(moved) if is_allowed else np.full_like(goal, np.nan)).ravel()
 
     start = np.array([float(getattr(program, name)) for name in names])
     nudges = np.array([_nudge(program, name) for name in names])

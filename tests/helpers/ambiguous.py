@@ -74,6 +74,11 @@ MISTAKES = (  # what is told the program after its placeholders, what is true of
     ({"rate": "7.2722052166430e-5", "gtimes": "1.0005"}, "solar_day site.gravity", 0),
     ({"lat": "48", "fast": "1.0003"}, "site.latitude clock", 0),
     ({"model": "1", "reading": "1", "half": "-1"}, "linear_g no_centrifugal coriolis_sign", 3),
+    (
+        {"model": "1", "reading": "1", "half": "-1", "ratetimes": "1.01"},
+        "linear_g no_centrifugal coriolis_sign site.rotation_rate",
+        3,
+    ),
 )  # fmt: skip
 
 

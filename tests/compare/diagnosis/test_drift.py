@@ -48,3 +48,28 @@ def test_a_coriolis_force_of_the_wrong_sign_is_told_beside_a_step_error() -> Non
 def test_a_loose_tolerance_alone_is_a_step_error_and_nothing_else() -> None:
     found = explained(1e-5, set())
     assert found.words == {"integrator_loose"}
+
+
+EXACT = 1e-12  # relative tolerance of RK45 at which no step error is left
+RATE = 7.292115e-5
+LINEAR = {"model": "linear", "gravity": "none"}
+OTHER_WAY = [{"coriolis_sign", "hemisphere"}]
+
+
+@pytest.mark.parametrize(
+    ("fields", "certain", "either"),
+    [
+        (LINEAR | {"rate": -1.01 * RATE}, {"site.rotation_rate"}, OTHER_WAY),
+        (LINEAR | {"rate": 1.01 * RATE, "coriolis": -1.0}, {"site.rotation_rate"}, OTHER_WAY),
+        (LINEAR | {"latitude": -48.5}, {"site.latitude"}, OTHER_WAY),
+        ({"latitude": -48.5}, {"site.latitude"}, []),
+    ],
+)
+def test_a_plane_that_turns_the_other_way_with_another_number(
+    fields: dict[str, Any], certain: set[str], either: list[set[str]]
+) -> None:
+    """In a plane Ω sin φ alone counts, so that its sign may be that of Ω or of φ; the sphere shows which."""
+    explanation = explained(EXACT, set(), **fields).explanation
+    ids = {cause.id for cause in explanation.causes} - {"linear_g", "no_centrifugal"}
+    assert {word for word in ids if "|" not in word} == certain
+    assert [set(word.split("|")) for word in ids if "|" in word] == either
