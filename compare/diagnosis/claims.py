@@ -107,7 +107,9 @@ def nothing(case: FileCase) -> Explanation:
 def explanation_of(
     case: FileCase, readings: Sequence[CauseReading]
 ) -> tuple[Explanation, Hypothesis | None]:
-    """Return what may be said of a file, and the hypothesis behind it; no cause where no reading passes the tests.
+    """Return what may be said of a file, and the best hypothesis without a step error of unknown method.
+
+    There is no cause where no reading passes the tests.
 
     Args:
         case: the file.
@@ -180,13 +182,14 @@ class _AmongRivals:
             return
         explained = self.best.explains or not self.best.untyped
         needed = all(self._need(cause) >= NEEDED for cause in differing)
-        certain = self.best.is_sound and explained and needed and not self._takes_up(differing)
+        certain = self.best.is_sound and explained and needed and not self._is_confounded(differing)
         yield from _either(differing, _different(self._alternatives), certain)
 
-    def _takes_up(self, differing: Sequence[Deviation]) -> bool:
-        """Return whether a number that nobody typed stands beside the alternatives, and takes up a part of any other.
+    def _is_confounded(self, differing: Sequence[Deviation]) -> bool:
+        """Return whether a fitted number outside the alternatives may absorb a part of any of them.
 
-        A drift has two such numbers: beside it no alternative has another one.
+        A step error of unknown method has two such numbers: beside it an alternative with a fitted number of its own
+        is not certain.
         """
         own = {cause.id for cause in differing}
         beside = {cause.id for cause in self.best.untyped_inputs} - own

@@ -46,7 +46,7 @@ def cautions(scene: Scene, word: str, varied: tuple[str, ...] = ()) -> list[str]
     if is_own and scene.site.gravity_is == "ellipsoid" and "site.gravity_is" not in varied:
         text = (
             f'site.gravity_is is "ellipsoid": {GRAVITY_MEANINGS["ellipsoid"]}. '
-            f'A gravimeter or a table of g gives "effective": {GRAVITY_MEANINGS["effective"]}.'
+            f'A g from a gravimeter or a table is "effective": {GRAVITY_MEANINGS["effective"]}.'
         )
         if is_on_earth(scene.exact):
             normal = f"{normal_gravity(float(scene.site.latitude)):.5f}"

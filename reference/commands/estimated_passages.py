@@ -28,7 +28,7 @@ class _Missing(NamedTuple):
     """Why the time of a passage is missing.
 
     Attributes:
-        reason: for people.
+        reason: what the user is told.
         is_absent: whether the motion has no such passage; False where it could not be solved.
     """
 
@@ -67,6 +67,7 @@ class PassageEstimates:
     def document(self, word: str, asked: Asked) -> dict[str, Any]:
         """Return what is estimated of a passage in the form of --json, or why nothing is.
 
+        `reason`: the motion has no such passage. `no_estimate`: the motion could not be solved.
         `limits`: how far each input alone moves it, and its share. `enough_by_estimate`: see
         `_enough`.
         """
@@ -111,7 +112,7 @@ class PassageEstimates:
         return Effect.of(own, numbers)
 
     def _times(self, scene: Scene, digits: int) -> _Times:
-        """Return when the passages come, or why they do not."""
+        """Return the time of each passage, or why it is missing."""
         times: _Times = {}
         for found in computed_passages(scene, self._asked, self._longest_s, digits):
             word = found["section"]

@@ -144,7 +144,7 @@ def passage_facts(passages: Sequence[dict[str, Any]]) -> Iterator[Fact]:
     for passage in passages:
         word = passage["section"]
         if "number" not in passage:
-            yield word, f"no passages: {passage['reason']}"
+            yield word, f"not computed: {passage['reason']}"
         elif "reason" in passage:
             yield passage_name(word, passage["number"]), f"none: {passage['reason']}"
         else:

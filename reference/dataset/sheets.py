@@ -45,16 +45,16 @@ class Sheet:
 
     def scaled_integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
         """Return some columns times a common power of ten, as integers, and that power of ten."""
-        columns_of_texts = []
+        texts_by_column = []
         decimals = 0
         for name in columns:
             index = self.header.index(name)
             texts = [row[index] for row in self.rows]
             decimals = max([decimals, *map(_decimals_in, texts)])
-            columns_of_texts.append(texts)
+            texts_by_column.append(texts)
 
         scaled = []
-        for texts in columns_of_texts:
+        for texts in texts_by_column:
             scaled.append(integers(_scaled(text, decimals) for text in texts))
         return scaled, 10**decimals
 

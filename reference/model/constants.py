@@ -46,11 +46,11 @@ class Constants:
         turn: rotation vector Ω in rad/s on the axes east, north, up.
         pull: gravity plus centrifugal force at the pivot, over l, in 1/s²; effective gravity is
             both together.
-        centrifugal: Ω², Ωz², -Ωy Ωz, Ωy², the entries xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, in 1/s².
+        centrifugal: Ω², Ωz², -Ωy Ωz, Ωy², the entries xx, yy, yz, zz of |Ω|² I - Ω Ωᵀ, in 1/s².
         drag: γ in 1/s.
         gravity: g/l in 1/s².
         axis_distance: R/l; 0 where gravity is effective.
-        rate: |Ω| with its sign, in rad/s.
+        rate: Ω, positive where the Earth turns eastward, in rad/s.
         sin: sine of the geodetic latitude.
         cos: cosine of the geodetic latitude.
     """
@@ -157,8 +157,8 @@ def turn_and_pull(
 
 
 def centrifugal_products(rate: Any, north: Any, up: Any) -> tuple[Any, Any, Any, Any]:
-    """Return the entries xx, yy, yz, zz of |Ω|² - Ω Ωᵀ for Ω = (0, north, up), in any number type.
+    """Return the entries xx, yy, yz, zz of |Ω|² I - Ω Ωᵀ for Ω = (0, north, up), in any number type.
 
-    `rate` is |Ω|, of either sign.
+    `rate` is Ω, of which the square alone is used.
     """
     return rate * rate, up * up, -north * up, north * north

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Literal
 
 GravityIs = Literal["ellipsoid", "effective"]
-# what each says of g: in the schema and the template, and wherever a user reads or chooses it
+# what each means, in the words of the schema, the template, `show`, its warning and the page's form
 GRAVITY_MEANINGS: dict[GravityIs, str] = {
     "ellipsoid": "gravity alone, to which the centrifugal force is added",
     "effective": "as measured along the plumb line, with the centrifugal force included",

@@ -243,6 +243,11 @@ function unmark(...names) {
   showOutdated();
 }
 
+function markTolerance() {
+  if (at("tolerance").value === judgedTolerance) unmark("tolerance");
+  else mark("tolerance");
+}
+
 function showOutdated() {
   const [change] = changes;
   at("outdated").textContent = change ? `Out of date: ${CHANGED[change]}` : "";
@@ -338,7 +343,7 @@ function judgeByEnter(event) {
   else judgeFiles(files);
 }
 
-// Another tolerance, when its field is left. A browser fires this event for Enter as well, after the key, which has judged.
+// The field is left with another tolerance. Enter fires `change` too, after `keydown` has judged: then nothing is left to do.
 function judgeByChange() {
   if (at("tolerance").value !== judgedTolerance) judgeFiles(files);
 }
@@ -384,7 +389,7 @@ form.addEventListener("input", ({ target }) => {
 });
 at("preset").addEventListener("change", (event) => takePreset(event.target.value));
 at("tolerance").addEventListener("change", judgeByChange);
-at("tolerance").addEventListener("input", () => mark("tolerance"));
+at("tolerance").addEventListener("input", markTolerance);
 at("tolerance").addEventListener("keydown", judgeByEnter);
 at("pasted").addEventListener("input", () => mark("rows"));
 at("judge").addEventListener("click", judgePasted);

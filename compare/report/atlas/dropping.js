@@ -10,7 +10,7 @@ let drops = 0; // so far: of two the later one is shown
 
 // The golden function {record, coefficients, end}: in the page, or in a script beside it; null without one.
 let functionRead = null; // a promise of it
-function functionMade() {
+function readGoldenFunction() {
   functionRead ??= page.beside === null ? Promise.resolve(page.function) : new Promise((done) => {
     const script = document.createElement("script");
     script.onload = () => done(globalThis.goldenFunction);
@@ -27,7 +27,7 @@ function functionMade() {
 // What answers files: a worker that knows the golden data.
 let judging = null;
 function judgingWorker() {
-  judging ??= functionMade().then(async (goldenFunction) => {
+  judging ??= readGoldenFunction().then(async (goldenFunction) => {
     const worker = startedWorker("judging");
     await worker.ask("know", { data: page, goldenFunction });
     return worker;

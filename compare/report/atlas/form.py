@@ -27,7 +27,7 @@ _LABELS = {
     "run.t_end": "end",
     "run.grid_step": "step of rows",
 }
-# where a visitor has a g of each meaning from
+# where a g of each meaning usually comes from
 _SOURCES_OF_G: dict[GravityIs, str] = {
     "ellipsoid": "G M/r²",
     "effective": "a gravimeter, a book (9.81), or a table or formula for your latitude",

@@ -26,7 +26,7 @@ function gravityTrial({ names, times, printed, golden, allowed, resolution }, tr
   const explains = largestResidual <= allowed;
   const leavesLittle = explains || NEEDED ** 2 * residual <= error;
   const isHarmless = residuals.every((values, i) => farthest(values) <= RIVAL * Math.max(farthest(errors[i]), resolution));
-  const need = error / Math.max(residual, resolution); // by which the residual is larger without it
+  const need = error / Math.max(residual, resolution); // factor by which the residual grows without it
 
   const { said, advice } = MEANINGS_OF_G[other.is];
   const hedge = need < NEEDED ? LIKE_ONE_THAT : "";

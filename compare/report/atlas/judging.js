@@ -109,9 +109,9 @@ function errorsOf(columns, { rows, golden }) {
 }
 
 // The end of a sentence on a mistake: the error without it, in tolerances too if it is more than one.
-function correctedTo(residual_m, allowed) {
-  const beyond = residual_m > allowed ? `, ${shortNumber(residual_m / allowed, 2)} tolerances: something else is wrong too` : "";
-  return `corrected, the error is ${residual_m.toPrecision(2)} m${beyond}.`;
+function correctedTo(residual, allowed) {
+  const beyond = residual > allowed ? `, ${shortNumber(residual / allowed, 2)} tolerances: something else is wrong too` : "";
+  return `corrected, the error is ${residual.toPrecision(2)} m${beyond}.`;
 }
 
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
@@ -238,9 +238,9 @@ function firstWrongPlace(error) {
 function suspicions(columns, { rows, golden }, errors, truth, allowed) {
   const { words } = truth;
   const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
-  function explained(texts, residual_m) {
-    if (residual_m > enough) return [];
-    return [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(residual_m, allowed)}`];
+  function explained(texts, residual) {
+    if (!(residual <= enough)) return [];
+    return [`${texts.filter(Boolean).join(", and ")}: ${correctedTo(residual, allowed)}`];
   }
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
@@ -257,8 +257,8 @@ function suspicions(columns, { rows, golden }, errors, truth, allowed) {
   const late = -vx.reduce((sum, u, i) => sum + u * ex[i] + vy[i] * ey[i], 0) / square;
   const ez = errors.components.z;
   const height = (i) => (ez ? ez[i] + late * vz[i] : 0);
-  const residual_m = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], height(i))));
-  return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], residual_m) : [];
+  const residual = most(vx.map((u, i) => Math.hypot(ex[i] + late * u, ey[i] + late * vy[i], height(i))));
+  return square ? explained([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], residual) : [];
 }
 
 // The unit in which times are meant: the rows, their times in it, are within 2 % of the truth; a sentence or none.
@@ -275,8 +275,8 @@ function unitOfTime(columns, truth, allowed = Infinity) {
     };
     const all = [...columns.t.keys()];
     if (each > 1 && truth.at && residualOf(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
-    const residual_m = residualOf(all);
-    if (residual_m <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(residual_m, allowed)}`];
+    const residual = residualOf(all);
+    if (residual <= EXPLAINED * amplitude) return [`Your file ${text}: ${correctedTo(residual, allowed)}`];
   }
   return [];
 }

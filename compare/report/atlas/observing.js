@@ -78,7 +78,7 @@ function observedCase(columns, judged, truth, allowed) {
     golden,
     length: truth.length_m,
     allowed: enough,
-    residualLimit: Math.max(Math.min(enough, error / NEEDED), noise), // of a map that is named
+    residualLimit: Math.max(Math.min(enough, error / NEEDED), noise), // largest residual of a map or clock that is named, in m
     resolution: Math.max(noise, FINEST * allowed),
   };
 }

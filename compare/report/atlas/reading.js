@@ -293,7 +293,7 @@ function headerOf(lines, least, most, needed, vocabulary) {
     const fitting = [...counts].filter((count) => least <= count && count <= most).sort((one, other) => other - one);
     const below = first >= 0 && i > first;
     if (below && fitting.some((count) => complete[first].has(count) && lineOfUnits(lines[i], count, vocabulary))) continue;
-    const count = fitting.find((fields) => complete[i].has(fields)) ?? least;
+    const count = fitting.find((candidate) => complete[i].has(candidate)) ?? least;
     const header = namedBy(lines[i], count, needed, vocabulary);
     if (header) return { i, header };
   }
@@ -526,7 +526,7 @@ function withoutLostFrames(columns, numbers, notes, vocabulary) {
   const names = Object.keys(columns);
   const isLost = columns.t.map((_, i) => names.some((name) => name !== "t" && Number.isNaN(columns[name][i])));
   const last = isLost.lastIndexOf(false);
-  const lost = isLost.map((isLostRow, i) => isLostRow && i < last);
+  const lost = isLost.map((value, i) => value && i < last);
   for (const [name, column] of Object.entries(columns)) {
     const row = column.findIndex((value, i) => !lost[i] && !(Math.abs(value) <= vocabulary.LARGEST));
     if (row >= 0) throw new Unreadable(`Line ${numbers[row]}: ${name} is ${String(column[row]).toLowerCase()}. The run failed there.`);

@@ -81,7 +81,7 @@ def _quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     """
     coefficients, h = stepper.coefficients()
     scaled: list[Any] = [abs((k + 1) * a * h**k) for k, a in enumerate(coefficients[0][1:])]
-    # not numbers where h is infinite, as at rest
+    # NaN where h is infinite, as at rest: then the comparison below is false
     leading = scaled[multiplicity]
     higher = scaled[multiplicity + 1 :]
     for halvings in range(stepper.number.prec):
@@ -122,17 +122,17 @@ def march(
     limit = end - stepper.time
     while stepper.time < end:
         mark = stepper.mark()
-        counts = len(states), len(zeros)
         stepper.advance(limit)
         step_zeros = sorted(stepper.zeros, key=lambda zero: zero.t)
         directions = [zero.direction for zero in step_zeros]
-        steps.append(_Step(mark, *counts, stepper.time, *stepper.last_of_x(), directions))
+        last_of_x = stepper.last_of_x()
+        steps.append(_Step(mark, len(states), len(zeros), stepper.time, *last_of_x, directions))
         zeros += step_zeros
         stepper.sample(times, states)
         if len(steps) > _AT_ONCE or retries or stepper.time >= end:
-            wrong = _first_contradiction(steps, stepper.numbers)
-            if wrong is not None:
-                i, contradiction = wrong
+            failed = _first_contradiction(steps, stepper.numbers)
+            if failed is not None:
+                i, contradiction = failed
                 retries += 1
                 if retries > _MAX_RETRIES:
                     raise IntegrationError(
@@ -141,7 +141,8 @@ def march(
                 limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(_SHORTER**retries)
                 _take_back(stepper, steps, max(i - 1, 0), states, zeros)
                 continue
-            retries = retries if limit < end - mark[0] else 0
+            if limit >= end - mark[0]:
+                retries = 0
             del steps[:-1]
         limit = end - stepper.time
         if report is not None:

@@ -148,6 +148,13 @@ def test_show_gives_any_passage_of_an_exact_scene():
     assert none["reason"] == "the run has 73"
 
 
+def test_the_passages_of_a_motion_that_cannot_be_solved_are_not_computed(foucault):
+    """That is not the same as that there are none."""
+    stiff = ("--set", "pendulum.drag=1e9", "--set", "run.t_end=20")
+    _, out, _ = foucault("show", "paris", *stiff, "--passage", "3")
+    assert "not computed: Stiff: " in out and "no passages" not in out
+
+
 def test_without_a_passage_asked_for_none_is_computed():
     assert "passages" not in shown("paris", "--set", "run.t_end=600")
 
