@@ -72,8 +72,8 @@ def path(axes: Any, motion: PicturedMotion) -> None:
         title=f"Path from above: {_shown(motion)}",
     )
     axes.set(xlabel=f"x in {unit}, east", ylabel=f"y in {unit}, north")
-    axes.xaxis.set_major_locator(_length_ticks())
-    axes.yaxis.set_major_locator(_length_ticks())
+    axes.xaxis.set_major_locator(_value_ticks())
+    axes.yaxis.set_major_locator(_value_ticks())
     axes.grid(True)
     _key(axes)
 
@@ -115,6 +115,7 @@ def plane(axes: Any, motion: PicturedMotion) -> None:
     angle = _thinned(angle, _DOTS)
     seconds, word = time_unit(float(motion.t[-1]))
     _dots(axes, t * seconds, angle, BLUE)
+    axes.yaxis.set_major_locator(_value_ticks())
     if np.ptp(angle) < _SMALL:
         axes.set_ylim(float(np.mean(angle)) - _SMALL, float(np.mean(angle)) + _SMALL)
     if not smooth:
@@ -144,6 +145,7 @@ def transits(axes: Any, motion: PicturedMotion) -> None:
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
     axes.set(title=f"Where the bob turns in x: {counted(len(motion.transit_t), 'transit')}")
     axes.xaxis.set_major_locator(time_ticks())
+    axes.yaxis.set_major_locator(_value_ticks())
     axes.grid(True)
     _key(axes)
 
@@ -291,8 +293,12 @@ def time_ticks() -> Any:
     return MaxNLocator(6, steps=[1, 2, 3, 6, 10])
 
 
-def _length_ticks() -> Any:
-    """Return a locator that gives both axes of a path the same ticks."""
+def _value_ticks() -> Any:
+    """Return a locator of as many ticks for small axes as for large ones.
+
+    Otherwise the axes, once they have their place, would get other and wider labels, which push the
+    title of the axis out of the picture. And both axes of a path have the same ticks.
+    """
     from matplotlib.ticker import MaxNLocator
 
     return MaxNLocator(4, steps=[1, 2, 5, 10])

@@ -248,6 +248,13 @@ def test_a_chart_says_what_it_shows_and_follows_the_page(pictures, name, size):
         assert draw() == svg
 
 
+@pytest.mark.parametrize("scene", ["over_top", "almost_inverted", "paris"])
+def test_titles_of_the_axes_of_a_motion_lie_inside_its_pictures(scene):
+    for svg in motion_svgs(PicturedMotion.of_golden(load(scene))):
+        upright = re.findall(r'font-size="(\S+)px".*rotate\(-90 (\S+) \S+\)', svg)
+        assert all(float(left) > 0.75 * float(height) for height, left in upright), svg[:200]
+
+
 def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(pictures):
     ids, references = [], set()
     for svg in pictures.values():
