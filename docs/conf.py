@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ from pathlib import Path
 from docutils import nodes
 from myst_parser.parsers.sphinx_ import MystParser
 from sphinx.application import Sphinx
+from sphinx.transforms.post_transforms import SphinxPostTransform
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -82,7 +84,28 @@ def _parts(cell: dict) -> Iterator[str]:
             yield f"```text\n{''.join(data['text/plain']).rstrip()}\n```"
 
 
+class WholeNumbers(SphinxPostTransform):
+    """Keeps a number such as 1e-10 on one line, which a browser would break behind the hyphen."""
+
+    default_priority = 900
+    formats = ("html",)
+    with_exponent = re.compile(r"(\d[\d.]*e-\d+)")
+
+    def run(self, **_: object) -> None:
+        """Give each such number of a text an element of its own, which style.css does not break."""
+        for old in list(self.document.findall(nodes.Text)):
+            parts = self.with_exponent.split(old)
+            if len(parts) == 1 or isinstance(old.parent, nodes.FixedTextElement | nodes.raw):
+                continue
+            # the parts take turns: text, number, text, …
+            new: list[nodes.Node] = [nodes.Text(part) for part in parts]
+            for place in range(1, len(parts), 2):
+                new[place] = nodes.inline("", "", new[place], classes=["number"])
+            old.parent.replace(old, new)
+
+
 def setup(app: Sphinx) -> None:
-    """Have Sphinx read notebooks."""
+    """Have Sphinx read notebooks, and keep numbers whole."""
     app.add_source_suffix(".ipynb", "ipynb")
     app.add_source_parser(Notebook)
+    app.add_post_transform(WholeNumbers)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from itertools import pairwise
 
 from places import ROOT
 from structure import PACKAGES, picture, sources
@@ -47,3 +48,21 @@ def test_the_picture_of_the_packages_is_that_of_todays_imports():
     again = "python tests/helpers/structure.py --picture > docs/packages.svg"
     assert (ROOT / "docs/packages.svg").read_text(encoding="utf-8") == picture(ROOT), again
     assert "](packages.svg)" in PAGE
+
+
+def test_no_line_of_the_picture_runs_behind_a_box():
+    svg = (ROOT / "docs/packages.svg").read_text(encoding="utf-8")
+    number = r"([\d.]+)"
+    boxes = re.findall(
+        rf'<rect x="{number}" y="{number}" width="{number}" height="{number}" rx="3"/>', svg
+    )
+    lines = re.findall(r'<polyline points="(.+?)"/>', svg)
+    assert lines and boxes
+    for line in lines:
+        corners = [tuple(map(float, corner.split(","))) for corner in line.split()]
+        for (x1, y1), (x2, y2) in pairwise(corners):
+            for part in range(1, 100):
+                x = x1 + (x2 - x1) * part / 100
+                y = y1 + (y2 - y1) * part / 100
+                for left, top, wide, high in (map(float, box) for box in boxes):
+                    assert not (left < x < left + wide and top < y < top + high), (line, x, y)

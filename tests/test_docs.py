@@ -494,6 +494,15 @@ def test_every_command_is_on_the_page_on_commands_with_its_options(site):
     )
 
 
+def test_a_number_with_an_exponent_is_one_element_that_is_not_broken_across_lines(site):
+    page = (site / STUDIES).with_suffix(".html").read_text(encoding="utf-8")
+    shown = re.sub(r"<(script|style|pre)\b.*?</\1>|<title>.*?</title>", "", page, flags=re.S)
+    numbers = re.findall(r"(>?)\b\d[\d.]*e-\d+", re.sub(r"<a\b[^>]*>", "", shown))
+    assert set(numbers) == {">"}
+    style = (site / "_static/style.css").read_text(encoding="utf-8")
+    assert re.search(r"^\.number \{[^}]*white-space: nowrap", style, re.M)
+
+
 def test_a_broken_link_fails(tmp_path):
     (tmp_path / "docs").mkdir()
     links = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from places import ROOT
 
 MOST_BYTES = 40_000
 WITHOUT_FLINT = "no FLINT for C here"
+HALF_A_LETTER = 3  # pixels of a figure
 TINY = 1e-9  # of a distance in m: below it rounding decides what is printed
 
 
@@ -47,10 +49,25 @@ def test_every_cell_prints_what_the_notebook_keeps(
     cells = code_cells(json.loads(path.read_text(encoding="utf-8")))
     for cell, (printed, value) in zip(cells, run(path), strict=True):
         now = text_of({"outputs": outputs(printed, value, with_pictures=size(False, True))})
+        if hasattr(value, "draw_without_rendering"):
+            assert labels_apart(value)
         optional = "optional" in cell["metadata"].get("tags", ())
         assert same(text_of(cell), now) or (optional and WITHOUT_FLINT in now), (
             "run: python tests/helpers/notebooks.py"
         )
+
+
+def labels_apart(figure: Any) -> bool:
+    """Whether between any two tick labels of an axis there is the room of a letter."""
+    figure.draw_without_rendering()
+    for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+        labels = [*axis.get_ticklabels(), *axis.get_ticklabels(minor=True)]
+        boxes = [
+            label.get_window_extent().padded(HALF_A_LETTER) for label in labels if label.get_text()
+        ]
+        if any(one.overlaps(other) for one, other in combinations(boxes, 2)):
+            return False
+    return True
 
 
 def test_a_number_or_a_word_that_is_another_is_found() -> None:

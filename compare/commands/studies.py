@@ -177,6 +177,7 @@ def _study_methods(scene: Scene, options: StudyOptions) -> None:
     check_positive("--limit", options.limit)
     from ..candidates.external import SETTING
     from ..report.study_page import REPORT
+    from ..studies.row import UNKNOWN
     from ..studies.study import study as measured
     from ..studies.study_plan import bits_of, plan, precision_items, precision_scene
     from ..studies.users_program import files_of
@@ -197,7 +198,7 @@ def _study_methods(scene: Scene, options: StudyOptions) -> None:
     steps_s = numbers(STEPS_S if options.settings is None else options.settings, "--settings")
     for program, command in programs.items():
         settings = steps_s if SETTING in command else [0.0]
-        items += [(program, "momentum", setting) for setting in settings]
+        items += [(program, UNKNOWN, setting) for setting in settings]
 
     with stoppable(resumes(options.out)), progress() as show:
         done = measured(

@@ -20,6 +20,8 @@ from ..observed.swing_plane import Gauge, gauge_of
 # span.
 SWINGS = 9
 POINTS = 40  # per swing
+MOST = 1200  # points of a line
+_STRAIGHT = 0.002  # part of the path's size: a curve within this of its chord is drawn as the chord
 _COARSE = 3  # rows farther apart than this many of these points are not joined to a line
 _WIDE = -0.7  # z over cord length; a bob that rises above it is shown on its sphere
 _AT_REST = 2.0**-128  # motion below this part of the cord length is rounding, not a swing
@@ -39,6 +41,8 @@ class PicturedMotion:
         rows: x, y, z in m, shape (rows, 3); z is NaN where unknown.
         line: x, y, z in m of a curve along the path, shape (points, 3). A row of NaN separates
             single swings. Empty if the rows are too far apart.
+        controls: x, y, z in m of the control point of the quadratic curve from each point of the
+            line to the next, shape (points, 3). NaN where the line is straight.
         swings: number of single swings in the line; 0 if it shows the whole motion.
         plane_t: times in s of `plane`.
         plane: azimuth of the swing plane in degrees, from east to north, modulo 180.
@@ -52,6 +56,7 @@ class PicturedMotion:
     t: Array = field(repr=False)
     rows: Array = field(repr=False)
     line: Array = field(repr=False)
+    controls: Array = field(repr=False)
     swings: int
     plane_t: Array = field(repr=False)
     plane: Array = field(repr=False)
@@ -77,7 +82,7 @@ class PicturedMotion:
 
         moves = np.ptp(positions, axis=0).max() > _AT_REST * length
         gauge = _gauge(golden) if moves else None
-        line, swings = _line(golden.scene, t, states, gauge)
+        line, controls, swings = _line(golden.scene, t, states, gauge)
         if gauge is None:
             plane = np.full(len(states), np.nan)
         else:
@@ -92,6 +97,7 @@ class PicturedMotion:
             t=t,
             rows=positions,
             line=line,
+            controls=controls,
             swings=swings,
             plane_t=t[swinging],
             plane=plane[swinging],
@@ -107,13 +113,15 @@ class PicturedMotion:
         unknown = np.full(len(columns["x"]), np.nan)
         rows = np.column_stack([columns["x"], columns["y"], columns.get("z", unknown)])
         length = float(np.sqrt((rows**2).sum(axis=1)).max()) if "z" in columns else 0.0
+        line = thinned(rows, MOST) if _is_line(rows) else rows[:0]
         plane_t, plane = _axes(candidate.t, rows)
         return cls(
             name=candidate.name,
             length=length,
             t=candidate.t,
             rows=rows,
-            line=rows if _is_line(rows) else rows[:0],
+            line=line,
+            controls=np.full_like(line, np.nan),
             swings=0,
             plane_t=plane_t,
             plane=plane,
@@ -132,10 +140,17 @@ def _gauge(golden: Golden | Solution) -> Gauge | None:
     return gauge if gauge and golden.scene.exact.drag < 2 * gauge.omega else None
 
 
-def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
-    """Return the points of the line, shape (points, 3), and how many single swings it shows."""
+def thinned(values: Array, most: int) -> Array:
+    """Return at most `most` rows, evenly spread, the first and the last among them."""
+    if len(values) <= most:
+        return values
+    return np.asarray(values[np.linspace(0, len(values) - 1, most).round().astype(int)])
+
+
+def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[Array, Array, int]:
+    """Return the points and the control points of the line, and how many single swings it shows."""
     if gauge is None or t[1] * POINTS <= _COARSE * gauge.period:
-        return states[:, :3], 0
+        return *_through(t, states), 0
     swing = np.linspace(0.0, gauge.period, POINTS + 1)
     last_start = float(t[-1]) - gauge.period
     if last_start > SWINGS * gauge.period:
@@ -147,10 +162,36 @@ def _line(scene: Scene, t: Array, states: Array, gauge: Gauge | None) -> tuple[A
     try:
         points = trajectory(scene, times)[:, :3]
     except FoucaultError:
-        return states[:, :3], 0
+        return *_through(t, states), 0
     lines = points[index.reshape(len(starts), -1)]
     gaps = np.full((len(starts), 1, 3), np.nan)
-    return np.concatenate([lines, gaps], axis=1).reshape(-1, 3), len(starts)
+    line = np.concatenate([lines, gaps], axis=1).reshape(-1, 3)
+    return line, np.full_like(line, np.nan), len(starts)
+
+
+def _through(t: Array, states: Array) -> tuple[Array, Array]:
+    """Return the points of a line through states, and its control points.
+
+    A quadratic curve has one control point, for which its two tangents need not agree: it is the
+    mean of the points that half a step leads to along the velocities at both ends. A curve that the
+    eye cannot tell from its chord has none.
+    """
+    states = thinned(states, MOST)
+    half_s = np.diff(thinned(t, MOST))[:, None] / 2
+    position = states[:, :3]
+    velocity = states[:, 3:]
+    ahead = position[:-1] + half_s * velocity[:-1]
+    back = position[1:] - half_s * velocity[1:]
+    controls = (ahead + back) / 2
+
+    chord_middles = (position[:-1] + position[1:]) / 2
+    # a quadratic curve goes half as far from its chord as its control point
+    heights = np.linalg.norm(controls - chord_middles, axis=1) / 2
+    # the length of the cord would hide what is bent in a small swing
+    size = np.abs(position[:, :2]).max()
+    controls[heights <= _STRAIGHT * size] = np.nan
+    # no curve begins at the last point
+    return position, np.concatenate([controls, np.full((1, 3), np.nan)])
 
 
 def _is_line(rows: Array) -> bool:

@@ -15,10 +15,9 @@ from reference.numbers.precision import Array
 from reference.plain_text import shortened
 
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
-from .motion import POINTS, PicturedMotion
+from .motion import MOST, POINTS, PicturedMotion, thinned
 
 _DOTS = 360  # most dots of one kind in a panel
-_LINE = 1200  # most points of a path
 _DOT = 3.0  # diameter of a dot in points
 _PANEL = (3.5, 3.2)  # width and height in inches
 _SEEN_FROM = np.radians(-60.0)  # azimuth of the eye that sees the sphere
@@ -40,6 +39,7 @@ _TIME_UNITS = (  # seconds, symbol, and the smallest number of them that is show
 _SMALL = 0.01  # degrees: the least range of the azimuth's axis
 _ROUNDED = re.compile(r"(\d+\.\d\d)\d+")
 _ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after it
+_PATH = re.compile(r' d="([^"]*)"')
 _FONTS = re.compile(r'font-family="[^"]+"')
 _MARKERS = re.compile(r'(?:<use [^>]*fill="([^"]*)"[^>]*/>\s*){2,}')
 _PLACE = re.compile(r'x="(\S+)" y="(\S+)"')
@@ -53,14 +53,16 @@ def path(axes: Any, motion: PicturedMotion) -> None:
     points = np.concatenate([motion.rows, motion.line])[:, :2]
     size = float(np.nanmax(np.abs(points))) or 1.0
     scale, unit = length_unit(size)
-    line = _line(motion) * scale
-    rows = _thinned(motion.rows, _LINE) * scale
+    line = motion.line * scale
+    rows = thinned(motion.rows, MOST) * scale
     first = POINTS + 1 if motion.swings else len(line)
     if motion.swings:
         axes.plot(*line[:first, :2].T, color=BLUE, linewidth=1.1, label="first swing", zorder=3)
         axes.plot(*line[first:, :2].T, color=COLOURS[1], linewidth=0.7, label="later swings")
     elif len(line):
-        axes.plot(*line[:, :2].T, color=BLUE, linewidth=0.8, label="path")
+        controls = motion.controls * scale
+        everywhere = np.full(len(line), True)
+        _curves(axes, line[:, :2], controls[:, :2], everywhere, _Stroke("path", 0.8))
     else:
         _dots(axes, rows[:, 0], rows[:, 1], BLUE, "rows")
     _mark_start(axes, motion, *rows[0, :2])
@@ -72,8 +74,8 @@ def path(axes: Any, motion: PicturedMotion) -> None:
         title=f"Path from above: {_shown(motion)}",
     )
     axes.set(xlabel=f"x in {unit}, east", ylabel=f"y in {unit}, north")
-    axes.xaxis.set_major_locator(_length_ticks())
-    axes.yaxis.set_major_locator(_length_ticks())
+    axes.xaxis.set_major_locator(_value_ticks())
+    axes.yaxis.set_major_locator(_value_ticks())
     axes.grid(True)
     _key(axes)
 
@@ -83,16 +85,24 @@ def sphere(axes: Any, motion: PicturedMotion) -> None:
 
     The far side is faint.
     """
-    path_points = _line(motion) if len(motion.line) else motion.rows
-    bob = _projected(path_points / motion.length)
+    points = motion.line
+    controls = motion.controls
+    if not len(points):
+        points = motion.rows
+        controls = np.full_like(points, np.nan)
+    bob = _projected(points / motion.length)
+    bends = _projected(controls / motion.length)
+    behind = np.logical_not(bob.in_front)
+    far_side = _Stroke("far side", 0.5, 0.5)
+    near_side = _Stroke("near side", 0.9)
     turn = np.linspace(0, 2 * np.pi, 73)
     equator = _projected(np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]))
     axes.plot(np.cos(turn), np.sin(turn), color=FAINT, linewidth=0.8)
 
     axes.plot(*equator.half(front=False), color=FAINT, linewidth=0.6, linestyle=(0, (1, 3)))
-    axes.plot(*bob.half(front=False), color=BLUE, linewidth=0.5, alpha=0.5, label="far side")
+    _curves(axes, bob.plane, bends.plane, behind, far_side)
     axes.plot(*equator.half(front=True), color=FAINT, linewidth=0.6)
-    axes.plot(*bob.half(front=True), color=BLUE, linewidth=0.9, label="near side")
+    _curves(axes, bob.plane, bends.plane, bob.in_front, near_side)
 
     _mark_start(axes, motion, bob.right[0], bob.up[0])
     axes.plot([0], [0], marker="+", color=INK, markersize=6, linestyle="none", label="pivot")
@@ -111,10 +121,11 @@ def plane(axes: Any, motion: PicturedMotion) -> None:
     steps = (np.diff(motion.plane) + 90) % 180 - 90
     smooth = np.abs(steps).max() < 60
     angle = np.unwrap(motion.plane, period=180) if smooth else motion.plane
-    t = _thinned(motion.plane_t, _DOTS)
-    angle = _thinned(angle, _DOTS)
+    t = thinned(motion.plane_t, _DOTS)
+    angle = thinned(angle, _DOTS)
     seconds, word = time_unit(float(motion.t[-1]))
     _dots(axes, t * seconds, angle, BLUE)
+    axes.yaxis.set_major_locator(_value_ticks())
     if np.ptp(angle) < _SMALL:
         axes.set_ylim(float(np.mean(angle)) - _SMALL, float(np.mean(angle)) + _SMALL)
     if not smooth:
@@ -137,13 +148,14 @@ def transits(axes: Any, motion: PicturedMotion) -> None:
     ends = ((-1, BLUE, "eastern end"), (1, COLOURS[1], "western end"))
     for direction, colour, name in ends:
         selected = motion.directions == direction
-        t = _thinned(motion.transit_t[selected], _DOTS // 2)
-        x = _thinned(motion.transit_x[selected], _DOTS // 2)
+        t = thinned(motion.transit_t[selected], _DOTS // 2)
+        x = thinned(motion.transit_x[selected], _DOTS // 2)
         if len(t):
             _dots(axes, t * seconds, x * scale, colour, name)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
     axes.set(title=f"Where the bob turns in x: {counted(len(motion.transit_t), 'transit')}")
     axes.xaxis.set_major_locator(time_ticks())
+    axes.yaxis.set_major_locator(_value_ticks())
     axes.grid(True)
     _key(axes)
 
@@ -187,6 +199,7 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
             )
         text = _FONTS.sub('font-family="sans-serif"', text)
         text = _ELEMENT.sub(lambda element: _ROUNDED.sub(r"\1", element[0]), text)
+        text = _PATH.sub(_shortened_path, text)
         elements.append(_MARKERS.sub(_strokes, text))
     return elements
 
@@ -194,7 +207,7 @@ def motion_svgs(motion: PicturedMotion) -> list[str]:
 def thumbnail(motion: PicturedMotion) -> str:
     """Return the path, from above or on its sphere, as a small SVG element without words."""
     radius = 0.46 * _THUMB
-    points = _thinned(_line(motion) if len(motion.line) else motion.rows, _THUMB_POINTS)
+    points = thinned(motion.line if len(motion.line) else motion.rows, _THUMB_POINTS)
     if motion.wide:
         bob = _projected(points / motion.length)
         right = bob.right
@@ -212,6 +225,17 @@ def thumbnail(motion: PicturedMotion) -> str:
     release = f'<path class="release" d="M{words[0]}h0"/>'
     box = f"0 0 {_THUMB} {_THUMB}"
     return f'<svg viewBox="{box}" aria-hidden="true">{ring}<path d="{path}"/>{release}</svg>'
+
+
+def _shortened_path(path: re.Match[str]) -> str:
+    """Return a path on one line, which names a command once where it is repeated."""
+    parts = []
+    before = ""
+    for command in path[1].split("\n"):
+        name, _, numbers = command.strip().partition(" ")
+        parts.append(numbers if name == before else f"{name} {numbers}")
+        before = name
+    return f' d="{" ".join(parts).strip()}"'
 
 
 def _strokes(markers: re.Match[str]) -> str:
@@ -247,16 +271,49 @@ def _shown(motion: PicturedMotion) -> str:
     return whole
 
 
-def _line(motion: PicturedMotion) -> Array:
-    """Return the points of the line; single swings are short enough."""
-    return motion.line if motion.swings else _thinned(motion.line, _LINE)
+@dataclass(frozen=True)
+class _Stroke:
+    """How a line is drawn: its name in the key, its width in points, and its opacity."""
+
+    name: str
+    width: float
+    opacity: float = 1.0
 
 
-def _thinned(values: Array, most: int) -> Array:
-    """Return at most `most` rows, evenly spread, the first and the last among them."""
-    if len(values) <= most:
-        return values
-    return np.asarray(values[np.linspace(0, len(values) - 1, most).round().astype(int)])
+def _curves(axes: Any, points: Array, controls: Array, shown: Array, stroke: _Stroke) -> None:
+    """Draw a line: a curve from point to point where there is a control point, else a straight line.
+
+    Args:
+        axes: of the picture.
+        points: shape (points, 2); NaN is a gap.
+        controls: of the curve from each point to the next; NaN where it is straight.
+        shown: whether the part from each point to the next is drawn.
+        stroke: how it is drawn.
+    """
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    vertices = []
+    codes = []
+    pen = None  # the point that it is at
+    for i in range(len(points) - 1):
+        if not shown[i] or np.isnan(points[i : i + 2]).any():
+            continue
+        if pen != i:
+            vertices.append(points[i])
+            codes.append(Outline.MOVETO)
+        if np.isnan(controls[i]).any():
+            codes.append(Outline.LINETO)
+        else:
+            vertices.append(controls[i])
+            codes += [Outline.CURVE3, Outline.CURVE3]
+        vertices.append(points[i + 1])
+        pen = i + 1
+    style = {"linewidth": stroke.width, "alpha": stroke.opacity}
+    axes.plot([], [], color=BLUE, label=stroke.name, **style)
+    if vertices:
+        outline = Outline(vertices, codes)
+        axes.add_patch(PathPatch(outline, fill=False, edgecolor=BLUE, zorder=2, **style))
 
 
 @dataclass(frozen=True)
@@ -266,6 +323,16 @@ class _Projected:
     right: Array
     up: Array
     near: Array
+
+    @property
+    def plane(self) -> Array:
+        """The points as they are drawn, shape (points, 2)."""
+        return np.column_stack([self.right, self.up])
+
+    @property
+    def in_front(self) -> Array:
+        """Whether the middle between each point and the next is in front; of the last nothing is known."""
+        return np.append(self.near[:-1] + self.near[1:] > 0, False)
 
     def half(self, front: bool) -> tuple[Array, Array]:
         """Return right and up of the points in front or behind, and NaN for the others."""
@@ -291,8 +358,12 @@ def time_ticks() -> Any:
     return MaxNLocator(6, steps=[1, 2, 3, 6, 10])
 
 
-def _length_ticks() -> Any:
-    """Return a locator that gives both axes of a path the same ticks."""
+def _value_ticks() -> Any:
+    """Return a locator of as many ticks for small axes as for large ones.
+
+    Otherwise the axes, once they have their place, would get other and wider labels, which push the
+    title of the axis out of the picture. And both axes of a path have the same ticks.
+    """
     from matplotlib.ticker import MaxNLocator
 
     return MaxNLocator(4, steps=[1, 2, 5, 10])

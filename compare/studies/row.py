@@ -23,6 +23,7 @@ T = TypeVar("T")
 K = TypeVar("K")
 ColumnValues: TypeAlias = Array | Sequence[Fraction]  # doubles, or exact numbers
 FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
+UNKNOWN = ""  # formulation of a program or a file: nobody says in which variables it integrates
 _H_ROWS = 64  # rows at which h is evaluated
 _ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax
 _NUDGE = 1e-6  # of the time in which the motion changes
@@ -41,7 +42,7 @@ class Row:
 
     Attributes:
         method: its id.
-        formulation: of the equations of motion.
+        formulation: of the equations of motion; UNKNOWN of somebody's program or file.
         setting: step in s, relative tolerance, or bits.
         kind: which of these: "step", "tolerance" or "precision".
         inputs: how the scene's numbers are read: "decimal" or "binary64".
@@ -88,7 +89,8 @@ class Row:
         """Return the run, its status, and what was measured of error and cost."""
         error = "" if self.error_m is None else f", {self.error_m:.2g} m"
         cost = "" if self.cpu_s is None else f", {self.cpu_s:.2g} s"
-        return f"Row({self.method} in {self.formulation} at {self.setting:g}: {self.status}{error}{cost})"
+        equations = f" in {self.formulation}" if self.formulation else ""
+        return f"Row({self.method}{equations} at {self.setting:g}: {self.status}{error}{cost})"
 
     @property
     def key(self) -> tuple[str, str, float]:

@@ -8,7 +8,7 @@ Study(paris, 60 s: 7 of 7 rows measured)
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -97,11 +97,11 @@ class _MethodRuns(OnScene[Item, Row]):
 
     def measure(self, item: Item) -> Row:
         name, formulation, setting = item
+        bench = Bench(self.scene, self.truth, self.limit_s)
         if name in self.commands:
-            method = external(self.commands[name], name=name)
-        else:
-            method = METHODS[name]
-        return Bench(self.scene, self.truth, self.limit_s).row(method, formulation, setting)
+            row = bench.row(external(self.commands[name], name=name), None, setting)
+            return replace(row, formulation=formulation)
+        return bench.row(METHODS[name], formulation, setting)
 
     def failed(self, item: Item, status: Status, reason: str) -> Row:
         kind = "step" if item[0] in self.commands else METHODS[item[0]].setting

@@ -32,14 +32,14 @@ from ..methods import METHODS
 from ..methods.external import LONGEST_NAME
 from ..truth import truth_at
 from .campaign import load_per_core
-from .row import Row
+from .row import UNKNOWN, Row
 from .study_plan import parsed
 
 # that a program is asked for: the millionth of the amplitude that `foucault score` allows
 DIGITS = 6.0
 _PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
 NUMBER = "program"  # what stands for a program's number type
-FILE = "file"  # kind of the row of a file, which has no setting; in place of its formulation
+FILE = "file"  # kind of the row of a file, which has no setting
 _STATUSES = {
     OutOfTimeError: Status.OUT_OF_TIME,
     NotFiniteError: Status.NOT_FINITE,
@@ -161,7 +161,7 @@ def file_row(
         scene: that it is of.
         golden: its truth.
     """
-    base = Row(name, FILE, 0.0, FILE, scene.inputs, Status.OK, "" if cpu_s is None else STATED)
+    base = Row(name, UNKNOWN, 0.0, FILE, scene.inputs, Status.OK, "" if cpu_s is None else STATED)
     try:
         row, _ = _against(base, candidate, cpu_s, scene, golden, math.inf)
     except InputError as error:

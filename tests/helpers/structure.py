@@ -13,26 +13,31 @@ import ast
 import sys
 from collections import Counter
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
+from statistics import fmean
 
 PACKAGES = ("reference", "compare")
 # of the picture: a package, a box, from box to box, floor to floor
 WIDE, BOX, HIGH, GAP, FLOOR = 420, 104, 26, 12, 58
 MARGIN, TITLE = 16, 30
+LANE = 4  # of a line that passes a floor between its boxes
+SWEEPS = 12  # over the floors, to order their boxes
 STYLE = """<style>
 text { font: 12px sans-serif; text-anchor: middle; fill: #222 }
 .package { font-weight: bold; text-anchor: start }
 rect { fill: #eef3f8; stroke: #5a7896 }
 .frame { fill: none; stroke: #b9c6d3 }
-line { stroke: #8aa }
+polyline { stroke: #8aa; fill: none }
 @media (prefers-color-scheme: dark) {
 text { fill: #ddd }
 rect { fill: #1d2a37; stroke: #7f9cb8 }
 .frame { fill: none; stroke: #4d5c6b }
-line { stroke: #688 }
+polyline { stroke: #688 }
 }
 </style>"""
 Arrows = set[tuple[str, str]]
+Item = str | tuple[str, str]  # of a floor: a room, or an arrow that passes it
 
 
 def sources(root: Path) -> list[Path]:
@@ -187,26 +192,96 @@ def direct(found: Arrows) -> Arrows:
     }
 
 
+class Layout:
+    """Places of rooms, and of the lanes in which lines pass a floor between its boxes.
+
+    A line from floor to floor runs in the space between them, so it never touches a box. Where it passes a floor it
+    has a lane there: the arrow itself, at its place in the row.
+    """
+
+    def __init__(self, rooms: set[str], found: Arrows) -> None:
+        stack = floors(rooms, found)
+        floor = {room: k for k, row in enumerate(stack) for room in row}
+        self.rows: list[list[Item]] = [sorted(row) for row in stack]
+        self.routes: list[list[tuple[int, Item]]] = []  # of each line: floors, and its item there
+        for a, b in sorted(found):
+            lanes = range(floor[a] + 1, floor[b])
+            for k in lanes:
+                self.rows[k].append((a, b))
+            self.routes.append([(floor[a], a), *((k, (a, b)) for k in lanes), (floor[b], b)])
+        self._order()
+
+    def _order(self) -> None:
+        """Order each row by the middles of its neighbours, downwards and upwards in turn; keep the shortest lines."""
+        best = list(self.rows)
+        shortest = self._length()
+        downwards = range(1, len(self.rows))
+        upwards = range(len(self.rows) - 2, -1, -1)
+        for _ in range(SWEEPS):
+            for rows, step in ((downwards, -1), (upwards, 1)):
+                for k in rows:
+                    self.rows[k] = self._ordered(k, k + step)
+                length = self._length()
+                if length < shortest:
+                    best = list(self.rows)
+                    shortest = length
+        self.rows = best
+
+    def _ordered(self, k: int, other: int) -> list[Item]:
+        """A row, ordered by the middle of each item's neighbours in another row; by its own if it has none there."""
+        own = self.middles(k)
+        beside = self.middles(other)
+        neighbours: dict[Item, list[float]] = {item: [] for item in own}
+        for route in self.routes:
+            at = dict(route)
+            if k in at and other in at:
+                neighbours[at[k]].append(beside[at[other]])
+        wanted = {item: fmean(near or [own[item]]) for item, near in neighbours.items()}
+        return sorted(own, key=wanted.__getitem__)
+
+    def _length(self) -> float:
+        """How far all lines run sideways."""
+        middles = [self.middles(k) for k in range(len(self.rows))]
+        return sum(
+            abs(middles[k][a] - middles[m][b])
+            for route in self.routes
+            for (k, a), (m, b) in pairwise(route)
+        )
+
+    def middles(self, k: int) -> dict[Item, float]:
+        """The middle of each item of a row, the row in the middle of its package."""
+        widths = [BOX if isinstance(item, str) else LANE for item in self.rows[k]]
+        x = (WIDE - sum(widths) - GAP * (len(widths) - 1)) / 2
+        middles = {}
+        for item, width in zip(self.rows[k], widths, strict=True):
+            middles[item] = x + width / 2
+            x += width + GAP
+        return middles
+
+
 def drawn(root: Path, name: str, left: int) -> tuple[list[str], int]:
     """A package as elements of SVG, and how high it is: a row of boxes for each floor, a line for each direct arrow."""
     rooms, found = arrows(root, name)
-    stack = floors(rooms, found)
-    places: dict[str, tuple[float, int]] = {}
-    for k, floor in enumerate(stack):
-        first = left + (WIDE - len(floor) * (BOX + GAP) + GAP) / 2
-        for i, room in enumerate(sorted(floor)):
-            places[room] = first + i * (BOX + GAP), TITLE + k * FLOOR
+    layout = Layout(rooms, direct(found))
+    middles = [layout.middles(k) for k in range(len(layout.rows))]
     lines, boxes = [], []
-    for a, b in sorted(direct(found)):
-        (x1, y1), (x2, y2) = places[a], places[b]
-        lines.append(
-            f'<line x1="{x1 + BOX / 2:g}" y1="{y1 + HIGH}" x2="{x2 + BOX / 2:g}" y2="{y2}"/>'
-        )
-    for room, (x, y) in sorted(places.items()):
-        boxes.append(f'<rect x="{x:g}" y="{y}" width="{BOX}" height="{HIGH}" rx="3"/>')
-        boxes.append(f'<text x="{x + BOX / 2:g}" y="{y + 17}">{room}</text>')
+    for route in layout.routes:
+        points = []
+        for k, item in route:
+            x, top = left + middles[k][item], TITLE + k * FLOOR
+            points += [f"{x:g},{top}", f"{x:g},{top + HIGH}"]
+        # from the lower edge of the first box to the upper edge of the last
+        lines.append(f'<polyline points="{" ".join(points[1:-1])}"/>')
+    for k, row in enumerate(middles):
+        for room in sorted(item for item in row if isinstance(item, str)):
+            x, y = left + row[room], TITLE + k * FLOOR
+            boxes.append(
+                f'<rect x="{x - BOX / 2:g}" y="{y}" width="{BOX}" height="{HIGH}" rx="3"/>'
+            )
+            boxes.append(f'<text x="{x:g}" y="{y + 17}">{room}</text>')
     title = f'<text class="package" x="{left + MARGIN}" y="19">{name}</text>'
-    return [title, *lines, *boxes], TITLE + len(stack) * FLOOR - FLOOR + HIGH + MARGIN
+    high = TITLE + len(layout.rows) * FLOOR - FLOOR + HIGH + MARGIN
+    return [title, *lines, *boxes], high
 
 
 def picture(root: Path) -> str:

@@ -46,7 +46,7 @@ class StudyResults:
     """Results of the kept studies for one scene.
 
     Attributes:
-        same_digits: runs that were asked for the same digits, by name.
+        same_digits: runs that were asked for digits, by name.
         least: the most accurate run of each method over `span_s`.
         span_s: in s; 0 if there is no such study.
     """
@@ -74,7 +74,7 @@ class StudyResults:
         ending = ", and none was silently wrong"
         if wrong:
             ending = f"; silently wrong: {', '.join(wrong)}"
-        return f"{right} of {len(runs)} runs of methods kept what was asked for{ending}."
+        return f"{right} of {len(runs)} runs of methods are ok{ending}."
 
 
 def run_name(run: Cell | Row) -> str:
@@ -207,7 +207,7 @@ def _reason(error: Exception) -> str:
 
 
 def _add_study(document: dict[str, Any], results: defaultdict[str, StudyResults]) -> None:
-    """Add the results in a study's document: a study of one scene, or runs of the same digits."""
+    """Add the results in a study's document: a study of one scene, or runs that were asked for digits."""
     scene = document.get("scene")
     if scene is None:
         rows = [_NOT_KEPT | row for row in document["rows"]]

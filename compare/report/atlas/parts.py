@@ -33,12 +33,17 @@ from ...score.judge import SMALL
 from ...score.time_span import FAR, FINER, SAME
 from ...score.transit_matching import unjudged_transits
 from ...score.verdict import WHOLE
-from ...studies.stability import Cell
+from ...studies.stability import SWINGS, WRONG, Cell
 from ..page import Html, PageTable, facts, text
 from .entry import Entry, StudyResults, run_name
 
 # of the proof's THEOREM.md
 _THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}
+_RULE = (
+    f"The most accurate runs first, over {SWINGS} small swings at most (docs/studies.md). A run is ok if its error "
+    f"is at most {WRONG} times what was asked for. It is silently wrong if it reports success with an error above "
+    "that, and above what the motion makes of an error as asked for at the release. Runs that are not ok are coloured."
+)
 _IMPORTED = {"IO", "UTC"}  # names in capitals that the modules of the vocabulary import
 
 
@@ -137,12 +142,13 @@ def methods(studied: StudyResults) -> list[Html]:
     if studied.least:
         runs = [(run_name(row), f"{row.error_m:.2g} m", _cpu(row.cpu_s)) for row in studied.least]
         least = PageTable({"method": "", "least error": "number", "its CPU s": "number"}, runs)
-        parts.append(least.html(f"The most accurate run of each method over {studied.span_s:g} s"))
+        caption = f"Of all settings of a method that were run over {studied.span_s:g} s, the most accurate"
+        parts.append(least.html(caption))
     return parts
 
 
 def _same_digits(cells: Mapping[str, Cell]) -> Html:
-    """Return a table of runs that were asked for the same digits, the most accurate first."""
+    """Return a table of runs that were asked for digits, the most accurate first, and the rule that judges them."""
     columns = {"method": "", "outcome": ""}
     columns |= dict.fromkeys(("asked for", "digits kept", "CPU s"), "number")
 
@@ -157,8 +163,7 @@ def _same_digits(cells: Mapping[str, Cell]) -> Html:
         numbers = (_tenths(cell.asked), _tenths(cell.digits), _cpu(cell.cpu_s))
         rows.append((name, cell.status.words, *numbers))
         row_classes.append("" if cell.status is Status.OK else "failed")
-    caption = "Runs that were asked for the same digits (docs/studies.md)"
-    return PageTable(columns, rows, row_classes).html(caption)
+    return PageTable(columns, rows, row_classes).html(_RULE)
 
 
 def _tenths(digits: float | None) -> str:

@@ -95,7 +95,8 @@ function showVerdict(shown, files, result, { name, end, reference, bound }, note
   if (!result.points) return;
   const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
   const moving = ["In ", elementOf("a", { href: "#player" }, "the moving picture"), " your bob is the orange one, with its error enlarged as the line below it says."];
-  const help = `How far your bob is from the right one, in m. Below the line “tolerance” it agrees; below “${bound}” nothing can be told. `;
+  const ofBound = showsBound(result) ? `; below “${bound}” nothing can be told` : "";
+  const help = `How far your bob is from the right one, in m. Below the line “tolerance” it agrees${ofBound}. `;
   shown.append(elementOf("p", { className: "faint" }, help, ...moving), pictureOf(errorPicture(result, wide, bound)));
 }
 

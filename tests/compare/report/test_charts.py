@@ -248,6 +248,26 @@ def test_a_chart_says_what_it_shows_and_follows_the_page(pictures, name, size):
         assert draw() == svg
 
 
+@pytest.mark.parametrize("scene", ["over_top", "almost_inverted", "paris"])
+def test_titles_of_the_axes_of_a_motion_lie_inside_its_pictures(scene):
+    for svg in motion_svgs(PicturedMotion.of_golden(load(scene))):
+        upright = re.findall(r'font-size="(\S+)px".*rotate\(-90 (\S+) \S+\)', svg)
+        assert all(float(left) > 0.75 * float(height) for height, left in upright), svg[:200]
+
+
+@pytest.mark.parametrize("scene", ["over_top", "force_free", "barely_over"])
+def test_a_line_between_rows_far_apart_is_a_curve_on_the_sphere_not_a_chord(scene):
+    motion = PicturedMotion.of_golden(load(scene))
+    before, after, controls = motion.line[:-1], motion.line[1:], motion.controls[:-1]
+    chord = np.linalg.norm(before + after, axis=1) / 2
+    curve = np.linalg.norm(before + 2 * controls + after, axis=1) / 4
+    assert chord.min() < 0.97 * motion.length, "rows so far apart that a chord is seen"
+    drawn = np.where(np.isnan(curve), chord, curve)
+    assert np.abs(drawn - motion.length).max() < 0.01 * motion.length
+    path, sphere, *_ = motion_svgs(motion)
+    assert all(re.search(r' d="M[^"]*Q ', svg) for svg in (path, sphere))
+
+
 def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(pictures):
     ids, references = [], set()
     for svg in pictures.values():

@@ -78,6 +78,32 @@ def test_a_number_of_the_page_is_its_value_to_three_digits():
     assert [float(text) for text in printed(numbers)] == numbers
 
 
+def pictured(errors, tolerance=1e-6, bound=2e-14):
+    """Return the texts in the picture of errors at whole seconds, and the heights of its points."""
+    script = (
+        source("drawing.js")
+        + 'console.log(JSON.stringify(errorPicture(JSON.parse(require("fs").readFileSync(0)), 640, "bound")));'
+    )
+    points = [[float(t), error] for t, error in enumerate(errors)]
+    path = {"covered_s": [0.0, points[-1][0]]}
+    result = {"points": points, "path": path, "tolerance_m": tolerance, "bound_m": bound}
+    svg = node(script, result)
+    line = re.search(r'class="error" d="(.*?)"', svg)[1]
+    heights = [float(place.split()[1]) for place in re.split("[ML]", line)[1:]]
+    return re.findall(r"<text[^>]*>(.*?)</text>", svg), heights
+
+
+def test_the_picture_of_errors_has_titles_with_units_and_begins_at_the_decade_of_its_data():
+    # the release is right, and its error of rounding is no reason for a longer axis
+    words, heights = pictured([1e-17, 4e-4, 3e-3, 2e-2])
+    assert {"position error in m", "t in s", "tolerance"} <= {*words} and "bound" not in words
+    assert {"10⁻⁶", "10⁻¹"} <= {*words} and "10⁻¹⁶" not in words
+    assert heights == sorted(heights, reverse=True) and heights[0] > heights[1]
+    # errors as small as the bound of the truth are shown beside it
+    words, _ = pictured([0.0, 5e-15, 3e-14, 4e-10])
+    assert {"10⁻¹⁴", "bound", "tolerance"} <= {*words} and "10⁻¹⁵" not in words
+
+
 @pytest.fixture(scope="module")
 def golden():
     return reference.load("paris.binary64")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import re
 import shutil
 
@@ -16,8 +17,9 @@ import reference
 from compare import judge
 from compare.report.atlas.entry import Entry, StudyResults, entries, kept_studies, studies_folder
 from compare.report.atlas.pages import scene_page
-from compare.report.atlas.parts import plain, vocabulary
+from compare.report.atlas.parts import methods, plain, vocabulary
 from reference.scenes.shipped import golden_root
+from reference.status import Status
 
 browser = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 
@@ -150,6 +152,16 @@ def test_without_a_study_the_page_says_nothing_of_methods(atlas, readings):
     (paris,) = entries(readings, None)
     assert "How methods fare" in (atlas / "paris.html").read_text()
     assert "How methods fare" not in scene_page(paris, [], "", None, None)
+
+
+def test_the_page_states_the_rule_by_which_runs_are_ok_and_the_kept_results_obey_it():
+    studied = kept_studies(studies_folder())["hard"]
+    tables = "".join(methods(studied))
+    (times,) = re.findall(r"ok if its error is at most (\d+) times what was asked for", tables)
+    finished = [run for run in studied.same_digits.values() if run.digits is not None]
+    assert {run.status for run in finished} == {Status.OK, Status.SILENTLY_WRONG}
+    for run in finished:
+        assert (run.status == Status.OK) == (run.digits >= run.asked - math.log10(int(times)))
 
 
 def test_a_dataset_of_hostile_words_has_a_page(foucault, tmp_path):
