@@ -79,8 +79,29 @@ def readings_of(case: FileCase, stepped: bool = False) -> list[CauseReading]:
 def same_motions(
     case: FileCase, reading: CauseReading, catalogue: Sequence[Cause]
 ) -> Iterator[CauseReading]:
-    """Yield readings with other causes in place of some, which are the same motion in principle, or nearly."""
-    words = {cause.id for cause in reading.causes}
+    """Yield readings with other causes in place of some, which are the same motion in principle, or nearly.
+
+    In each of these, further causes may have others in their place.
+    """
+    seen = {_words(reading)}
+    waiting = [reading]
+    while waiting:
+        for other in _with_one_exchange(case, waiting.pop(), catalogue):
+            if _words(other) not in seen:
+                seen.add(_words(other))
+                waiting.append(other)
+                yield other
+
+
+def _words(reading: CauseReading) -> frozenset[str]:
+    return frozenset(cause.id for cause in reading.causes)
+
+
+def _with_one_exchange(
+    case: FileCase, reading: CauseReading, catalogue: Sequence[Cause]
+) -> Iterator[CauseReading]:
+    """Yield readings with the other side of one of `SAME_MOTIONS` in place of its one side."""
+    words = _words(reading)
     for before, after in SAME_MOTIONS:
         if not before <= words:
             continue

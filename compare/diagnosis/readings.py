@@ -103,6 +103,7 @@ class Reader:
             beam = [*longer[:BEAM], *others[:ASIDE]]
             if not beam:
                 break
+        best = [self._with_named_sign(reading, causes) for reading in best]
         best.sort(key=lambda reading: reading.score)
         first = self._exchanged(best[0], causes)
         named = first if self.joint else self._exactly_named(first, causes)
@@ -120,6 +121,23 @@ class Reader:
             readings += [fewer, *filter(None, exchanged)]
         best = readings[first_least([10**other.score for other in readings])]
         return best if best is reading else self._exchanged(best, causes)
+
+    def _with_named_sign(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
+        """Return a reading whose fitted rate turns the other way with a Coriolis force of the wrong sign in its place.
+
+        That is the same motion: the centrifugal force has the square of the rate.
+        """
+        rates = [cause for cause in reading.causes if cause.free == "rate"]
+        groups = {cause.group for cause in reading.causes}
+        rate = reading.program.rate
+        if not rates or rate * self.right.rate >= 0 or "coriolis" in groups:
+            return reading
+        sign = next(cause for cause in causes if cause.id == "coriolis_sign")
+        together = (*reading.causes, sign)
+        if abs(rate + self.right.rate) <= SAME * abs(rate):
+            rate = -self.right.rate
+            together = tuple(cause for cause in together if cause not in rates)
+        return self._judged(together, sign.change(reading.program.changed(rate=-rate)))
 
     def _exactly_named(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Put a named cause in place of a fitted number that is as good as equal to its own: that is no accident."""
@@ -164,7 +182,14 @@ class Reader:
             program = self._with_first_step(reading.program, together, program)
         goal = np.zeros(len(self._triangle))
         fitted, _ = adjusted(
-            program, free, self._off, goal, steps=NEWTON, gain=GAIN, strays=self.joint
+            program,
+            free,
+            self._off,
+            goal,
+            keeps_sign=False,
+            steps=NEWTON,
+            gain=GAIN,
+            strays=self.joint,
         )
         return self._judged(together, fitted)
 
@@ -322,18 +347,19 @@ def adjusted(
     names: Sequence[str],
     rows_of: Callable[[Program], Array],
     goal: Array,
+    keeps_sign: bool = True,
     **options: Any,
 ) -> tuple[Program, float]:
     """Return a program, some of its numbers moved to where the rows it makes come nearest to a goal, and the distance.
 
+    Unless `keeps_sign` is False, its Earth does not begin to turn the other way: that is a cause of its own.
     Further arguments are those of `gauss_newton`.
     """
 
     def rows_with(values: Array) -> Array:
         moved = program.with_inputs(names, values)
-        # an Earth that turns the other way is a Coriolis force of the wrong sign, a cause of its own:
-        # the centrifugal force has the square of the rate
-        is_allowed = moved.sensible and moved.rate * program.rate >= 0
+        same_way = moved.rate * program.rate >= 0
+        is_allowed = moved.sensible and (same_way or not keeps_sign)
         return (rows_of(moved) if is_allowed else np.full_like(goal, np.nan)).ravel()
 
     start = np.array([float(getattr(program, name)) for name in names])
