@@ -12,7 +12,7 @@ from reference.errors import Described, counted
 
 from .candidate import NO_ROWS
 from .names import Layout, Naming, advice, by_number, given, layout, meaning, units_of
-from .text import SEPARATORS, says_nothing, split, without_end, words
+from .text import SEPARATORS, says_nothing, split, without_end, without_label, words
 
 MOST = 1000  # lines above the first row that are looked at
 # names of columns in a comment, and half of its words, from which on it is meant as the header
@@ -100,6 +100,7 @@ class Header:
         place = self._header(least, len(fields))
         if place is not None:
             i, header = place
+            header = without_label(header)
             if not least <= len(header) <= len(fields):
                 raise self._unequal(number, least, self.lines[i], len(header), separator)
             if not self._is_complete(header):

@@ -124,6 +124,13 @@ def without_end(fields: list[str]) -> list[str]:
     return fields[:end]
 
 
+def without_label(names: list[str]) -> list[str]:
+    """Return the names in a header without a label such as "Columns:" before them."""
+    first, *others = names
+    is_label = first.endswith(":") and not any(name.endswith(":") for name in others)
+    return others if is_label and others else names
+
+
 def doubtful_number(columns: Sequence[Sequence[str]], commas_separate: bool) -> str | None:
     """Return a number whose mark may be decimal or may separate thousands.
 

@@ -177,6 +177,7 @@ def of_the_field() -> dict[str, Spelling]:
         table('t,x,y,"note, if any"', [(*row, '"a, b"') for row in HALVES])
     )
     found["latest"] = read(table("Latest: Time (s),Latest: X (m),Latest: Y (m)", HALVES))
+    found["label"] = read(table("Columns: t x y", HALVES, " "))
     found["quotes blanks"] = read(table('"t" "x" "y"', HALVES, " "))
     # R4: names of three parts
     for x, y, factor in (
@@ -248,6 +249,7 @@ def of_my_own() -> dict[str, Spelling]:
         ),
         "semicolons",
     )
+    found["label and thousands"] = refused("Latest: t x y\n43 200 0 1\n43 201 1 0\n", "fields")
     found["thousands in quotes"] = refused('t,x,y\n"0",0.3,0.4\n"1,234",0.2,0.1\n', "1,234")
     found["comma before three digits"] = refused("t;x;y\n1;1,250;2,500\n2;1,125;2,375\n", "1,250")
     found["comma before three digits, once not"] = read(

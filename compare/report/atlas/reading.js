@@ -319,6 +319,13 @@ function unitsBeside(lines, i, count, vocabulary) {
   return [];
 }
 
+// The names in a header without a label such as "Columns:" before them.
+function withoutLabel(names) {
+  const [first, ...others] = names;
+  const isLabel = first.endsWith(":") && !others.some((name) => name.endsWith(":"));
+  return isLabel && others.length ? others : names;
+}
+
 // Refuse a comment that names columns, but not as many as there are, or in another order or unit than taken.
 function refuseOtherComment(lines, names, count, needed, vocabulary) {
   for (const line of lines) {
@@ -341,7 +348,8 @@ function layoutAbove(lines, row, separator, number, needed, vocabulary) {
   const least = withoutEnd(fields).length;
   const placed = headerOf(lines, least, fields.length, needed, vocabulary);
   if (placed) {
-    const { i, header } = placed;
+    const { i } = placed;
+    const header = withoutLabel(placed.header);
     const width = header.length;
     if (width < least || width > fields.length) {
       const commas = separator === "," && width < least && least <= 2 * width ? ` ${vocabulary.COMMAS}` : "";
