@@ -35,10 +35,11 @@ class Deviation:
             program …".
         size_m: the distance in m by which it moves the bob, in addition to the parts before it; 0
             if that is unknown.
-        stage: of a program's: gravity, model, input, release, frame, clock or integrator.
+        stage: of a program's: gravity, model, input, release, frame, clock or integrator; or as_if or
+            either, if it is not certain. Empty for a convention of the file.
         value: a fitted number, in its unit.
         shift: by how much it differs from the scene's.
-        uncertainty: of it, from what is left.
+        uncertainty: of it, an estimate from the residual.
     """
 
     id: str
@@ -48,6 +49,11 @@ class Deviation:
     value: float | None = None
     shift: float | None = None
     uncertainty: float | None = None
+
+    @property
+    def is_convention(self) -> bool:
+        """Whether it is a convention of the file, and no cause in the program."""
+        return not self.stage
 
 
 @dataclass(frozen=True, repr=False)

@@ -77,7 +77,7 @@ def experiment(
         rows: that file.
         scene: in the reading that the file was scored in.
         allowed_m: distance in m that counts as agreement.
-        chosen: the experiments to make, until one explanation is left.
+        chosen: the experiments to make, until one explanation remains.
 
     Returns:
         None where no program solves the scene, or none fits the file.

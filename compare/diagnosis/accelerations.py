@@ -21,7 +21,7 @@ _SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
 _LEAST = 30  # rows that can be differentiated
 _USUAL = 0.15  # rad of the swing: step between rows that are differentiated
 _FARTHEST = 0.5  # rad of the swing: the largest step
-_PROPOSED = 0.02  # of the mean square of the accelerations' errors: what terms leave that are run
+_PROPOSED = 0.02  # of the mean square of the accelerations' errors: the largest residual of terms that are run
 _MOST = 3  # terms that are run together
 _TRIED = 4  # proposals that are run
 
@@ -80,10 +80,10 @@ def _convolved(plane: Array, stencil: Array) -> Array:
 
 @dataclass(frozen=True)
 class _Proposal:
-    """Errors of coefficients, by place, and the mean square in m²/s⁴ that they leave of the accelerations' errors."""
+    """Errors of coefficients, by place, and the mean square of the residuals of the accelerations' errors in m²/s⁴."""
 
     coefficients: dict[Place, float]
-    left: float
+    mean_square: float
 
 
 def proposed(motion: MotionOfRows, k: Constants) -> list[dict[Place, float]]:
@@ -93,10 +93,10 @@ def proposed(motion: MotionOfRows, k: Constants) -> list[dict[Place, float]]:
     for count in range(1, _MOST + 1):
         sets = itertools.combinations(PLACES, count)
         proposals = [_fit(motion.state, errors, places) for places in sets]
-        proposals.sort(key=lambda proposal: proposal.left)
-        if proposals[0].left <= most:
-            near = RIVAL**2 * proposals[0].left
-            likely = [each.coefficients for each in proposals if each.left <= near]
+        proposals.sort(key=lambda proposal: proposal.mean_square)
+        if proposals[0].mean_square <= most:
+            near = RIVAL**2 * proposals[0].mean_square
+            likely = [each.coefficients for each in proposals if each.mean_square <= near]
             return likely[:_TRIED]
     return []
 
@@ -105,11 +105,11 @@ def _fit(state: Array, errors: Array, places: Sequence[Place]) -> _Proposal:
     """Return the fit of errors by the terms at some places."""
     basis = np.vstack([np.ones(state.shape[1]), state])
     coefficients: dict[Place, float] = {}
-    left = errors.copy()
+    residuals = errors.copy()
     for equation in range(2):
         terms = [term for where, term in places if where == equation]
         solution = solved(basis[terms].T, errors[equation])
-        left[equation] -= solution @ basis[terms]
+        residuals[equation] -= solution @ basis[terms]
         for term, coefficient in zip(terms, solution.tolist(), strict=True):
             coefficients[equation, term] = coefficient
-    return _Proposal(coefficients, float(np.mean(left**2)))
+    return _Proposal(coefficients, float(np.mean(residuals**2)))

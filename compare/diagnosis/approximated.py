@@ -10,7 +10,7 @@ from reference import FoucaultError, Scene
 from ..approximations import Motion, motions
 from ..candidates.candidate import Deviation
 from .case import HARMLESS, Explanation, FileCase, NamedModel, largest
-from .claims import Alternative, hedged, one_of, tested
+from .claims import Alternative, graded, hedged, one_of
 from .hypotheses import Claim
 from .thresholds import ALTERNATIVES, RIVAL
 
@@ -44,20 +44,20 @@ class _ApproximationClaim(Claim):
 
 def of_approximation(case: FileCase, scene: Scene) -> Explanation | None:
     """Return the explanation that a program solves an approximation; None if no approximation passes the tests."""
-    claims = [claim for claim in _claims(case, scene) if tested(claim, claim.cause, case.error)]
+    claims = [claim for claim in _claims(case, scene) if graded(claim, claim.cause, case.error)]
     if not claims:
         return None
-    least_m = min(claim.rest for claim in claims)
-    near = [claim for claim in claims if claim.rest <= RIVAL * least_m]
+    least_m = min(claim.residual_rms_m for claim in claims)
+    near = [claim for claim in claims if claim.residual_rms_m <= RIVAL * least_m]
     best = near[0]
-    cause = tested(best, best.cause, case.error)
+    cause = graded(best, best.cause, case.error)
     assert cause is not None
     if len(near) > ALTERNATIVES:
         cause = hedged(best.cause)
     elif len(near) > 1:
         alternatives = [Alternative(claim.cause.id, claim.cause.text) for claim in near]
         cause = one_of(alternatives, best.costs_m)
-    explanation = case.explanation((cause,), best.left, _PRICE)
+    explanation = case.explanation((cause,), best.residuals, _PRICE)
     plain = all(convention.id in HARMLESS for convention in case.rows.conventions)
     is_model = best.explains and plain and cause.id == best.motion.id
     return replace(explanation, model=best.model) if is_model else explanation

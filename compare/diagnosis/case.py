@@ -23,7 +23,7 @@ CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
 # conventions that a model may go with
 HARMLESS = ("z_constant", "decimals", "digits", "single_precision")
 UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
-# stage of a number that no person typed: the motion is like that, the cause is not known
+# stage of a cause that is not certain: the motion is like that
 AS_IF = "as_if"
 EITHER = "either"  # stage of several causes of which one is true: the file does not tell which
 BEGIN = "It seems that your program"
@@ -111,7 +111,7 @@ class Explanation:
         conventions: of the rows.
         causes: in the order gravity, model, inputs, release, frame, clock, integrator.
         model: the simplification that the file is exact within, if it is.
-        corrected_m: the largest error in m that is left after all of these.
+        corrected_m: the largest error in m once all of these are corrected.
         explains: whether that is within the tolerance, or the rounding of the file.
         slip: where none is known, which part of the force is off: a sentence.
         explained: share of the root mean square error that is gone with them.
@@ -119,7 +119,7 @@ class Explanation:
         allowed_m: distance in m that counts as agreement.
         next_step: what to do where no cause is certain.
         price: of its causes.
-        rest_m: the root mean square in m that is left.
+        residual_rms_m: the root mean square of the residuals in m, at least the resolution.
         reading: the `CauseReading` of its causes, whose numbers can be fitted again; None if it has none.
     """
 
@@ -134,7 +134,7 @@ class Explanation:
     allowed_m: float = math.inf
     next_step: str = ""
     price: int = 0
-    rest_m: float = math.inf
+    residual_rms_m: float = math.inf
     reading: Any = field(default=None, repr=False, compare=False)
 
     @property
@@ -160,11 +160,11 @@ class Explanation:
             yield 'Of what it "moves like" another number, a clock, a step or another term may be the cause.'
         if self.slip:
             yield self.slip
-        yield from self._rest()
+        yield from self._remaining_error()
         if self.next_step and not self.known:
             yield f"Next: {self.next_step}"
 
-    def _rest(self) -> Iterator[str]:
+    def _remaining_error(self) -> Iterator[str]:
         """Yield the error once all is corrected, or that nothing is known."""
         # which the rounding of a file, say, may be by itself
         enough = self.corrected_m <= self.allowed_m
@@ -175,16 +175,16 @@ class Explanation:
                 yield "No mistake known to foucault explains the error."
             return
         these = "this" if len(self.causes or self.conventions) == 1 else "all this"
-        # a smaller rest is rounding, and not the same on every processor
+        # a smaller error is rounding, and not the same on every processor
         rounding_m = self.allowed_m / 1000
-        left = f"below {rounding_m:.1g} m"
+        remaining = f"below {rounding_m:.1g} m"
         if self.corrected_m > rounding_m:
-            left = f"{self.corrected_m:.2g} m"
+            remaining = f"{self.corrected_m:.2g} m"
         tolerances = self.corrected_m / self.allowed_m
         beyond = ""
         if tolerances > 1:
             beyond = f", {tolerances:.2g} tolerances: no known mistake explains it"
-        yield f"With {these} corrected, the error is {left}{beyond}."
+        yield f"With {these} corrected, the error is {remaining}{beyond}."
 
 
 def _advised(part: Deviation) -> Iterator[str]:
@@ -233,7 +233,7 @@ class FileCase:
 
     @property
     def enough(self) -> float:
-        """Largest error in m that may be left."""
+        """Largest residual in m of rows that are explained."""
         return max(self.allowed_m, ROUNDED * self.rows.noise)
 
     @property
@@ -291,14 +291,14 @@ class FileCase:
 
         Args:
             causes: as in `Explanation`.
-            residuals: what they leave in m, shape (rows, 2 or 3).
+            residuals: of the rows in m, shape (rows, 2 or 3).
             price: of the causes; each convention costs one.
         """
         corrected_m = largest(residuals)
-        rest_m = rms(residuals)
+        residual_rms_m = rms(residuals)
         explains = corrected_m <= self.enough
         # what is within the tolerance speaks against no explanation
-        counted_m = 0.0 if explains else rest_m
+        counted_m = 0.0 if explains else residual_rms_m
         size = math.log10(max(counted_m / self.allowed_m, 1e-2))
         score = size + CONVENTION * (len(self.rows.conventions) + price)
         return Explanation(
@@ -306,11 +306,11 @@ class FileCase:
             causes=causes,
             corrected_m=corrected_m,
             explains=explains,
-            explained=1 - rest_m / self.error if self.error else 0.0,
+            explained=1 - residual_rms_m / self.error if self.error else 0.0,
             score=score,
             allowed_m=self.allowed_m,
             price=price,
-            rest_m=max(rest_m, self.resolution),
+            residual_rms_m=max(residual_rms_m, self.resolution),
         )
 
     def pendulum_of(self, program: Program) -> tuple[SphericalPendulum, Array]:
@@ -333,6 +333,6 @@ class FileCase:
         below = np.maximum(program.length**2 - np.abs(plane) ** 2, 0)
         return np.column_stack([plane.real, plane.imag, -np.sqrt(below)])[:, :columns]
 
-    def left(self, program: Program) -> Array:
-        """Return what a program leaves of the rows in m, shape (rows, 2 or 3)."""
+    def residuals(self, program: Program) -> Array:
+        """Return the rows less those of a program in m, shape (rows, 2 or 3)."""
         return self.rows.positions - self.positions(program)

@@ -1,7 +1,7 @@
 """The causes that an error may have (a solar day, no drag, ...), each one change in a `Program`: readings.py chooses.
 
-Causes that exclude each other stand in one group. The words of `id` are stable; `text` ends the sentence "Your
-program …". A cause with numbers in it (`free`) is fitted; all others are named and fixed.
+Causes that exclude each other are in one group. The ids are stable; `text` ends the sentence "Your program …". A cause
+with a number in it (`free`) is fitted; all others are named and fixed.
 """
 
 from __future__ import annotations
@@ -99,9 +99,9 @@ LIKE_A_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag", "clock")
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 
 
-def is_like_a_drift(word: str) -> bool:
+def is_like_a_drift(cause_id: str) -> bool:
     """Return whether a cause is the motion of a step error, or one."""
-    return word in LIKE_A_DRIFT or word.startswith("integrator")
+    return cause_id in LIKE_A_DRIFT or cause_id.startswith("integrator")
 
 
 @dataclass(frozen=True)
@@ -175,9 +175,9 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
         if method.late and (kind == "sphere" or right.vx or right.vy):
             continue  # it is known from the first rows of a linear motion from rest
         text = f"integrates with {method.title} at a step of about {{value}}"
-        word = f"integrator_{method.id}"
+        cause_id = f"integrator_{method.id}"
         cost = FITTED + RARE * method.late
-        yield Cause(word, "integrator", text, _set(method=method), cost, "step", "integrator")
+        yield Cause(cause_id, "integrator", text, _set(method=method), cost, "step", "integrator")
 
 
 def _linspace(intervals: int) -> Iterator[Cause]:
@@ -204,10 +204,10 @@ def _coriolis(**factors: float) -> Callable[[Program], Program]:
 
 
 def fitted_number(
-    word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input"
+    cause_id: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input"
 ) -> Cause:
     """Return the cause that a number of a program is another one."""
-    return Cause(word, group, text, lambda program: program, cost, free, stage)
+    return Cause(cause_id, group, text, lambda program: program, cost, free, stage)
 
 
 # the error of an integrator that has no name: a phase and an amplitude that drift, two numbers of one cause
@@ -229,8 +229,8 @@ def normal_gravities(latitude: float) -> tuple[float, ...]:
 
 
 def _gravity(right: Program) -> Iterator[Cause]:
-    def reading(name: str, word: str, text: str, cost: float = NAMED) -> Cause:
-        return Cause(word, "gravity", text, _set(gravity_reading=name), cost, stage="gravity")
+    def reading(name: str, cause_id: str, text: str, cost: float = NAMED) -> Cause:
+        return Cause(cause_id, "gravity", text, _set(gravity_reading=name), cost, stage="gravity")
 
     ellipsoid = right.gravity_reading == "ellipsoid"
     if right.rate:
@@ -295,9 +295,9 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
         yield from _frames()
 
 
-def _rate(word: str, text: str, value: float, cost: float = NAMED) -> Cause:
+def _rate(cause_id: str, text: str, value: float, cost: float = NAMED) -> Cause:
     """Return the cause that a rotation rate is another one."""
-    return Cause(word, "rate", text, _set(rate=value), cost)
+    return Cause(cause_id, "rate", text, _set(rate=value), cost)
 
 
 def _rates(right: Program) -> Iterator[Cause]:
@@ -355,8 +355,8 @@ def _coriolis_forces(kind: str) -> Iterator[Cause]:
         ("coriolis_double", "doubles the Coriolis force", 2.0),
         ("no_coriolis", "leaves out the Coriolis force", 0.0),
     )
-    for word, text, factor in factors:
-        yield Cause(word, "coriolis", text, _coriolis(both=factor))
+    for cause_id, text, factor in factors:
+        yield Cause(cause_id, "coriolis", text, _coriolis(both=factor))
     if kind != "sphere":
         return
     text = "uses only the vertical part of Ω in the Coriolis force"
@@ -385,10 +385,10 @@ def _frames() -> Iterator[Cause]:
         ("frame_x_west", "x points west and y south", (-1.0, 0.0, 0.0, -1.0)),
         ("frame_x_north_y_east", "x points north and y east", (0.0, 1.0, 1.0, 0.0)),
     )
-    for word, axes, matrix in frames:
+    for cause_id, axes, matrix in frames:
         own = f"uses axes of its own, in which {axes}"
         text = f"{own}, and takes the release's x and y in them"
-        yield Cause(word, "frame", text, _set(frame=matrix), 0.4, stage="frame")
+        yield Cause(cause_id, "frame", text, _set(frame=matrix), 0.4, stage="frame")
 
 
 def _latitude(right: Program) -> Iterator[Cause]:
@@ -440,9 +440,14 @@ def _release() -> Iterator[Cause]:
             0.4,
         ),
     )
-    for word, how, factor, cost in speeds:
+    for cause_id, how, factor, cost in speeds:
         yield Cause(
-            word, "release", f"releases the bob {how}", _set(released=factor), cost, stage="release"
+            cause_id,
+            "release",
+            f"releases the bob {how}",
+            _set(released=factor),
+            cost,
+            stage="release",
         )
 
 
@@ -458,17 +463,17 @@ def _inputs(right: Program, released: bool) -> Iterator[Cause]:
         yield Cause("no_drag", "drag", "leaves out the drag", _set(drag=0.0))
         yield Cause("drag_half", "drag", "takes half the drag", _set(drag=right.drag / 2), 0.4)
         yield Cause("drag_double", "drag", "takes twice the drag", _set(drag=2 * right.drag), 0.4)
-    for name, word in (
+    for name, cause_id in (
         ("g", "site.gravity"),
         ("length", "pendulum.length"),
         ("drag", "pendulum.drag"),
     ):
-        yield fitted_number(word, word, f"takes {word} to be {{value}}", name)
+        yield fitted_number(cause_id, cause_id, f"takes {cause_id} to be {{value}}", name)
     for name in ("vx", "vy") if released else ("x", "y", "vx", "vy"):
-        word = f"release.{name}"
+        cause_id = f"release.{name}"
         group = "start" if name in ("x", "y") else "release"
         # a push that the scene does not have is rarer than half a step of an integrator, which looks like one
         cost = FITTED if name in ("x", "y") or right.vx or right.vy else FITTED + PUSHED
         yield fitted_number(
-            word, f"{group}.{name}", f"takes {word} to be {{value}}", name, cost, "release"
+            cause_id, f"{group}.{name}", f"takes {cause_id} to be {{value}}", name, cost, "release"
         )

@@ -1,10 +1,13 @@
 """The tests of a claim: the only place where a sentence about a file or its program becomes certain.
 
 Whatever is proposed is run: causes of a program, maps of columns, conventions of a file, approximations of the source
-papers, steps, and slips of a formula. It is compared with the file column by column, with what is left without it, and
-with every other explanation of the same price or less. What passes all tests is certain. Of explanations that the file
-does not tell apart the difference is said as "either … or …". What the motion is merely like is said as that, and the
-rest not at all.
+papers, steps, and slips of a formula. It is compared with the file column by column, with the residual without it, and
+with every other explanation of the same price or less.
+
+- What passes all tests is certain.
+- Explanations that the file does not tell apart are said as "either … or …", as far as they differ.
+- What the motion is merely like is said as that.
+- Nothing else is said.
 """
 
 from __future__ import annotations
@@ -59,7 +62,7 @@ class Alternative:
 _A_STEP = Alternative("integrator_loose", LOOSE)
 
 
-def tested(claim: Claim, part: Deviation, without_m: float) -> Deviation | None:
+def graded(claim: Claim, part: Deviation, without_m: float) -> Deviation | None:
     """Return a part of an explanation as the tests of a claim allow it to be said; None if not at all.
 
     It is certain, or what the file or its motion is merely like.
@@ -71,35 +74,36 @@ def tested(claim: Claim, part: Deviation, without_m: float) -> Deviation | None:
     """
     if not claim.leaves_little or not claim.is_harmless:
         return None
-    return by_need(part if claim.is_sound else hedged(part), without_m / claim.rest)
+    growth = without_m / claim.residual_rms_m
+    return by_growth(part if claim.is_sound else hedged(part), growth)
 
 
-def by_need(part: Deviation, need: float) -> Deviation | None:
-    """Return a part of an explanation as its need allows it to be said; None if it is not needed.
+def by_growth(part: Deviation, growth: float) -> Deviation | None:
+    """Return a part of an explanation as certain or hedged, by how much it is needed; None if it is not needed.
 
-    `need` says how many times the residual grows without it.
+    `growth` is the factor by which the residual grows without it.
     """
-    if need < RIVAL:
+    if growth < RIVAL:
         return None
-    return part if need >= NEEDED else hedged(part)
+    return part if growth >= NEEDED else hedged(part)
 
 
 def hedged(part: Deviation) -> Deviation:
     """Return a cause as one that the motion is merely like, or a convention as one that the file is like."""
     if part.stage == AS_IF:
         return part
-    verb = "moves" if part.stage else "looks"
+    verb = "looks" if part.is_convention else "moves"
     text = f"{verb} like one that {part.text}"
     return replace(part, id=f"{AS_IF}.{part.id}", stage=AS_IF, text=text)
 
 
-def loose(size_m: float, stage: str = "integrator") -> Deviation:
-    """Return the cause that an integrator has an error, which one is not known."""
+def unnamed_step_error(size_m: float, stage: str = "integrator") -> Deviation:
+    """Return the cause that an integrator has an error whose method is not known."""
     cause = Deviation(_A_STEP.ids, _A_STEP.text, size_m, "integrator")
     return hedged(cause) if stage == AS_IF else cause
 
 
-def nothing(case: FileCase) -> Explanation:
+def no_explanation(case: FileCase) -> Explanation:
     """Return the explanation that has no cause."""
     return case.explanation((), case.rows.positions - case.truth, 0)
 
@@ -109,7 +113,7 @@ def explanation_of(
 ) -> tuple[Explanation, Hypothesis | None]:
     """Return what may be said of a file, and the best hypothesis without a step error of unknown method.
 
-    There is no cause where no reading passes the tests.
+    The explanation has no cause if no reading passes the tests.
 
     Args:
         case: the file.
@@ -117,41 +121,69 @@ def explanation_of(
     """
     hypotheses = _harmless(case, readings)
     if not hypotheses:
-        return nothing(case), None
-    best = without_needless(simplest(hypotheses))
-    likeliest = best
-    if best.untyped or not best.explains:
-        hypotheses += _harmless(case, drifting(case, readings))
-        hypotheses = [one for one in hypotheses if not one.names_no_step] or hypotheses
-        best = without_needless(simplest(hypotheses))
-    if best.drifts:
-        hypotheses += _harmless(case, list(instead_of_drift(case, best.reading)))
-        best = without_needless(simplest(hypotheses))
-    reported, needs = worth_saying(best)
+        return no_explanation(case), None
+
+    likeliest = without_needless(simplest(hypotheses))
+    best, hypotheses = _with_drifts(case, readings, hypotheses, likeliest)
+
+    reported, growths = worth_saying(best)
     if not reported.leaves_little or not reported.is_harmless:
-        return nothing(case), likeliest
-    comparison = _AmongRivals(best, rivals_of(best, hypotheses), reported, needs)
+        return no_explanation(case), likeliest
+    comparison = _AmongRivals(best, rivals_of(best, hypotheses), reported, growths)
+    return _explanation_by(comparison), likeliest
+
+
+def _with_drifts(
+    case: FileCase,
+    readings: Sequence[CauseReading],
+    hypotheses: list[Hypothesis],
+    likeliest: Hypothesis,
+) -> tuple[Hypothesis, list[Hypothesis]]:
+    """Return the best hypothesis, a step error of unknown method included, and all hypotheses.
+
+    Args:
+        case: the file.
+        readings: combinations of causes whose programs were run.
+        hypotheses: those of them that are harmless.
+        likeliest: the best of these.
+    """
+    best = likeliest
+    if best.arbitrary or not best.explains:
+        hypotheses = hypotheses + _harmless(case, drifting(case, readings))
+        undisguised = [one for one in hypotheses if not one.is_drift_in_disguise]
+        hypotheses = undisguised or hypotheses
+        best = without_needless(simplest(hypotheses))
+
+    if best.drifts:
+        hypotheses = hypotheses + _harmless(case, list(instead_of_drift(case, best.reading)))
+        best = without_needless(simplest(hypotheses))
+    return best, hypotheses
+
+
+def _explanation_by(comparison: _AmongRivals) -> Explanation:
+    """Return the explanation by a hypothesis that was compared with its rivals."""
+    reported = comparison.reported
     causes = tuple(comparison.causes())
-    explanation = case.explanation(causes, reported.left, reported.price)
-    model = _model(case, reported, causes)
-    return replace(explanation, model=model, reading=reported.reading), likeliest
+    explanation = reported.case.explanation(causes, reported.residuals, reported.price)
+    model = _model(reported.case, reported, causes)
+    return replace(explanation, model=model, reading=reported.reading)
 
 
 def _harmless(case: FileCase, readings: Sequence[CauseReading]) -> list[Hypothesis]:
-    """Return readings as hypotheses, without those that leave a column worse than the file has it."""
+    """Return readings as hypotheses, without those whose residual in a column exceeds the file's own error there."""
     hypotheses = [Hypothesis.of(case, reading) for reading in readings]
-    return [one for one in hypotheses if one.is_harmless and one.rest < math.inf]
+    return [one for one in hypotheses if one.is_harmless and one.residual_rms_m < math.inf]
 
 
 def _model(case: FileCase, best: Hypothesis, causes: Sequence[Deviation]) -> NamedModel | None:
     """Return the simplification that all causes make up; None if they are none, or not certain."""
     simple = {cause.stage for cause in causes} <= {"gravity", "model"}
     plain = all(convention.id in HARMLESS for convention in case.rows.conventions)
-    left_m = largest(best.left)
-    if not (causes and simple and plain and left_m <= case.allowed_m):
+    residual_m = largest(best.residuals)
+    if not (causes and simple and plain and residual_m <= case.allowed_m):
         return None
     costs_m = largest(case.rows.positions - case.truth)
-    return model_of(best.reading.program.kind, case.right, causes, left_m, costs_m)
+    return model_of(best.reading.program.kind, case.right, causes, residual_m, costs_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,28 +194,28 @@ class _AmongRivals:
         best: the hypothesis.
         rivals: of it.
         reported: the same without what is within the tolerance.
-        needs: how many times the residual grows without each of its causes, by word.
+        growths: the factor by which the residual grows without each of its causes, by id.
     """
 
     best: Hypothesis
     rivals: Sequence[Hypothesis]
     reported: Hypothesis
-    needs: dict[str, float]
+    growths: dict[str, float]
 
     def causes(self) -> Iterator[Deviation]:
-        """Yield what may be said of the causes, those that the rivals do not share as one of several."""
+        """Yield the causes as they may be said; those that the rivals do not share as one of several."""
         differing = []
         for cause in self._sized():
-            if cause.id in self._common:
-                yield self._graded(cause)
+            if cause.id in self._common_ids:
+                yield self._graded_shared(cause)
             else:
                 differing.append(cause)
         if not differing:
             return
-        explained = self.best.explains or not self.best.untyped
-        needed = all(self._need(cause) >= NEEDED for cause in differing)
+        explained = self.best.explains or not self.best.arbitrary
+        needed = all(self._growth(cause) >= NEEDED for cause in differing)
         certain = self.best.is_sound and explained and needed and not self._is_confounded(differing)
-        yield from _either(differing, _different(self._alternatives), certain)
+        yield from _either(differing, _without_longer_forms(self._alternatives), certain)
 
     def _is_confounded(self, differing: Sequence[Deviation]) -> bool:
         """Return whether a fitted number outside the alternatives may absorb a part of any of them.
@@ -192,59 +224,60 @@ class _AmongRivals:
         is not certain.
         """
         own = {cause.id for cause in differing}
-        beside = {cause.id for cause in self.best.untyped_inputs} - own
-        has_number = any(hypothesis.untyped_inputs for hypothesis in self._words)
+        beside = {cause.id for cause in self.best.arbitrary_inputs} - own
+        has_number = any(hypothesis.arbitrary_inputs for hypothesis in self._ids_by_hypothesis)
         return bool(beside) or (self.best.drifts and has_number)
 
     def _sized(self) -> Iterator[Deviation]:
         """Yield the causes that are reported, each with the distance by which it moves the bob."""
         for cause in sized(self.best.case, self.reported.reading):
-            if cause.id == _WITHOUT_CHANGE and cause.id not in self._words[self.best]:
+            if cause.id == _WITHOUT_CHANGE and cause.id not in self._ids_by_hypothesis[self.best]:
                 yield replace(cause, id=_EFFECTIVE_G, text=EFFECTIVE)
             else:
                 yield cause
 
-    def _graded(self, cause: Deviation) -> Deviation:
-        """Return a cause that all rivals share: certain, or as what the motion is like."""
+    def _graded_shared(self, cause: Deviation) -> Deviation:
+        """Return a cause that all rivals share: certain, or hedged."""
         if cause.stage == "integrator" and not self._names_the_step(cause):
-            needed = self.best.is_sound and self._need(cause) >= NEEDED
-            certain = needed and not self.best.untyped_inputs
-            return loose(cause.size_m, "integrator" if certain else AS_IF)
-        needed = self.best.is_sound and self._need(cause) >= self._least_need
-        if needed and self._is_an_input(cause):
+            needed = self.best.is_sound and self._growth(cause) >= NEEDED
+            certain = needed and not self.best.arbitrary_inputs
+            return unnamed_step_error(cause.size_m, "integrator" if certain else AS_IF)
+        needed = self.best.is_sound and self._growth(cause) >= self._least_growth
+        if needed and self._has_round_number(cause):
             return self._in_whole_steps(cause)
         return hedged(cause)
 
-    def _need(self, cause: Deviation) -> float:
-        """Return how many times the residual grows without a cause."""
-        is_renamed = cause.id == _EFFECTIVE_G and cause.id not in self.needs
-        return self.needs[_WITHOUT_CHANGE if is_renamed else cause.id]
+    def _growth(self, cause: Deviation) -> float:
+        """Return the factor by which the residual grows without a cause."""
+        is_renamed = cause.id == _EFFECTIVE_G and cause.id not in self.growths
+        return self.growths[_WITHOUT_CHANGE if is_renamed else cause.id]
 
     def _names_the_step(self, cause: Deviation) -> bool:
-        """Return whether the method of a step is known: its length is typed, and it leaves rounding."""
-        return cause.id not in self._untyped and self.best.is_exact
+        """Return whether the method of a step is known: its length is a round number, and the residual is rounding."""
+        return cause.id not in self._arbitrary_ids and self.best.is_exact
 
     @cached_property
-    def _least_need(self) -> float:
-        """How many times as much has to be left without a cause that is certain."""
+    def _least_growth(self) -> float:
+        """The least factor by which the residual grows without a cause that is certain."""
         if self.best.explains:
             return NEEDED
-        if self.best.untyped_inputs:
-            # where not even free numbers explain the rows, no other cause may be about as good by accident
+        if self.best.arbitrary_inputs:
+            # if not even free numbers explain the rows, none of the causes in the catalogue may be as good by accident
             return CATALOGUE / CHANCE
         return NEEDED**2 if self.best.drifts else NEEDED
 
-    def _is_an_input(self, cause: Deviation) -> bool:
-        """Return whether the number of a cause, if it has one, is one that somebody typed.
+    def _has_round_number(self, cause: Deviation) -> bool:
+        """Return whether the number of a cause, if it has one, counts as round.
 
-        A clock is no input: any factor will do, but not beside other numbers that take up what it leaves. Nor is a
-        factor of the rotation rate beside such numbers: a clock makes that as well.
+        - The factor of a clock may be any number, but not beside other arbitrary numbers, which absorb its residual.
+        - A factor of the rotation rate does not count as round beside arbitrary inputs: a clock has the same effect.
+        - The length of a step may be any number.
         """
         if cause.stage == "clock":
-            return self._untyped <= {cause.id}
+            return self._arbitrary_ids <= {cause.id}
         if cause.id == "rate_factor":
-            return not self.best.untyped_inputs
-        return cause.id not in self._untyped or cause.stage == "integrator"
+            return not self.best.arbitrary_inputs
+        return cause.id not in self._arbitrary_ids or cause.stage == "integrator"
 
     def _in_whole_steps(self, cause: Deviation) -> Deviation:
         """Return a cause, its step replaced by the one that goes into the spacing of the rows, if there is only one."""
@@ -260,47 +293,53 @@ class _AmongRivals:
         return replace(cause, text=text, value=step, shift=step)
 
     @cached_property
-    def _untyped(self) -> set[str]:
-        """The ids of the causes whose number nobody typed."""
-        return {cause.id for cause in self.best.untyped}
+    def _arbitrary_ids(self) -> set[str]:
+        """The ids of the causes with an arbitrary number."""
+        return {cause.id for cause in self.best.arbitrary}
 
     @cached_property
-    def _words(self) -> dict[Hypothesis, frozenset[str]]:
-        """The words of the hypothesis and of its rivals.
+    def _ids_by_hypothesis(self) -> dict[Hypothesis, frozenset[str]]:
+        """The ids of the causes of the hypothesis and of each rival.
 
         If all of them take g as effective, and some say more about it, only "effective" is kept.
         """
-        words = {one: one.words for one in (self.best, *self.rivals)}
+        by_hypothesis = {one: one.cause_ids for one in (self.best, *self.rivals)}
         effective = {_WITHOUT_CHANGE, _EFFECTIVE_G}
-        spoken = {one & effective for one in words.values()}
-        if all(spoken) and len(spoken) > 1:
-            return {one: every - effective | {_EFFECTIVE_G} for one, every in words.items()}
-        return words
+        variants = {cause_ids & effective for cause_ids in by_hypothesis.values()}
+        if all(variants) and len(variants) > 1:
+            return {
+                one: (cause_ids - effective) | {_EFFECTIVE_G}
+                for one, cause_ids in by_hypothesis.items()
+            }
+        return by_hypothesis
 
     @cached_property
-    def _shared(self) -> frozenset[str]:
-        """The words that the hypothesis and all its rivals have."""
-        return frozenset.intersection(*self._words.values())
+    def _shared_ids(self) -> frozenset[str]:
+        """The ids of the causes that the hypothesis and all its rivals have."""
+        return frozenset.intersection(*self._ids_by_hypothesis.values())
 
     @cached_property
     def _may_be_a_step(self) -> bool:
-        """Whether a step of no name does what the numbers do that nobody typed."""
-        untyped = [cause for one in self._words for cause in one.untyped]
-        if not any(cause.id in _ONE_DRIFT for cause in untyped):
+        """Whether a step error of unknown method has the same effect as the arbitrary numbers."""
+        arbitrary = [cause for one in self._ids_by_hypothesis for cause in one.arbitrary]
+        if not any(cause.id in _ONE_DRIFT for cause in arbitrary):
             return False
-        different = self._words[self.best] - self._shared | self._untyped
-        return all(map(is_like_a_drift, different))
+        own_ids = self._ids_by_hypothesis[self.best] - self._shared_ids
+        return all(map(is_like_a_drift, own_ids | self._arbitrary_ids))
 
     @cached_property
-    def _common(self) -> frozenset[str]:
-        """The words of causes that are in every alternative."""
-        return self._shared - self._untyped if self._may_be_a_step else self._shared
+    def _common_ids(self) -> frozenset[str]:
+        """The ids of the causes that every alternative has, a step error of unknown method included."""
+        if self._may_be_a_step:
+            return self._shared_ids - self._arbitrary_ids
+        return self._shared_ids
 
     @property
     def _alternatives(self) -> list[Alternative]:
         """The causes by which the hypothesis and its rivals differ."""
         alternatives = [
-            _alternative(one, words - self._common) for one, words in self._words.items()
+            _alternative(one, cause_ids - self._common_ids)
+            for one, cause_ids in self._ids_by_hypothesis.items()
         ]
         if not self.best.is_exact:
             alternatives = list(map(_without_name, alternatives))
@@ -309,36 +348,37 @@ class _AmongRivals:
         return alternatives
 
 
-def _alternative(hypothesis: Hypothesis, words: frozenset[str]) -> Alternative:
+def _alternative(hypothesis: Hypothesis, cause_ids: frozenset[str]) -> Alternative:
     """Return some causes of a hypothesis as one alternative."""
     texts = dict(sentences(hypothesis.case, hypothesis.reading))
-    if _EFFECTIVE_G in words and _EFFECTIVE_G not in texts:
+    if _EFFECTIVE_G in cause_ids and _EFFECTIVE_G not in texts:
         texts[_EFFECTIVE_G] = EFFECTIVE
-    chosen = [word for word in texts if word in words]
-    return Alternative("+".join(chosen), " and ".join(texts[word] for word in chosen))
+    chosen = [cause_id for cause_id in texts if cause_id in cause_ids]
+    return Alternative("+".join(chosen), " and ".join(texts[cause_id] for cause_id in chosen))
 
 
 def _without_name(alternative: Alternative) -> Alternative:
-    """Return an alternative; a step alone as one that has no name."""
+    """Return an alternative; a step alone as a step error of unknown method."""
     alone = alternative.ids.startswith("integrator") and "+" not in alternative.ids
     return _A_STEP if alone else alternative
 
 
-def _different(alternatives: Sequence[Alternative]) -> list[Alternative]:
-    """Return alternatives without those that say another one, and more: what both say is enough."""
+def _without_longer_forms(alternatives: Sequence[Alternative]) -> list[Alternative]:
+    """Return alternatives without longer forms of another one, whose text begins with the other's: that is enough."""
     by_text = {alternative.text: alternative for alternative in alternatives if alternative.text}
 
-    def says_another(text: str) -> bool:
+    def is_longer_form(text: str) -> bool:
         return any(text.startswith(other) and text != other for other in by_text)
 
-    return [alternative for text, alternative in by_text.items() if not says_another(text)]
+    return [alternative for text, alternative in by_text.items() if not is_longer_form(text)]
 
 
 def _either(
     differing: Sequence[Deviation], alternatives: Sequence[Alternative], certain: bool
 ) -> Iterator[Deviation]:
-    """Yield alternatives as one cause; where there are too many, those of the best as what the motion is like."""
+    """Yield alternatives as one cause; if they are too many or not certain, the differing causes, hedged."""
     first = max(differing, key=lambda cause: cause.size_m)
+    # g and l count as one: a linear motion shows only their quotient
     quotient = sum(alternative.ids in _ONE_NUMBER for alternative in alternatives)
     count = len(alternatives) - max(0, quotient - 1)
     if not certain or count > ALTERNATIVES:
@@ -352,11 +392,11 @@ def _either(
 
 def one_of(alternatives: Sequence[Alternative], size_m: float) -> Deviation:
     """Return the cause that one of several alternatives is true."""
-    words = [alternative.ids for alternative in alternatives]
+    ids = [alternative.ids for alternative in alternatives]
     texts = [alternative.text for alternative in alternatives]
-    if any(pair.issubset(words) for pair in _COMBINED):
+    if any(pair.issubset(ids) for pair in _COMBINED):
         texts.append("both" if len(alternatives) == 2 else "several of these")
-    return Deviation("|".join(words), f"either {', or '.join(texts)}", size_m, EITHER)
+    return Deviation("|".join(ids), f"either {', or '.join(texts)}", size_m, EITHER)
 
 
 def likelier(other: Explanation, program: Explanation) -> Explanation:
@@ -374,10 +414,10 @@ def likelier(other: Explanation, program: Explanation) -> Explanation:
         return other if other.explains else program
     cheap, dear = sorted((other, program), key=lambda explanation: explanation.price)
     if cheap.price < dear.price:
-        return dear if NEEDED * dear.rest_m < cheap.rest_m else cheap
-    if RIVAL * other.rest_m < program.rest_m:
+        return dear if NEEDED * dear.residual_rms_m < cheap.residual_rms_m else cheap
+    if RIVAL * other.residual_rms_m < program.residual_rms_m:
         return other
-    if RIVAL * program.rest_m < other.rest_m:
+    if RIVAL * program.residual_rms_m < other.residual_rms_m:
         return program
     return _either_of(program, other)
 
@@ -395,20 +435,20 @@ def _either_of(first: Explanation, second: Explanation) -> Explanation:
     return replace(first, causes=(cause,), conventions=(), model=None)
 
 
-def with_rival_step(named: Explanation, stepped: Explanation) -> Explanation:
-    """Return the better of two explanations with different steps, or one in which either step may be the cause.
+def likelier_step(named: Explanation, stepped: Explanation) -> Explanation:
+    """Return the likelier of two explanations with different steps, or one in which either step may be the cause.
 
-    The other one is no rival if it is dearer.
+    The second one is no rival if it is dearer.
     """
-    if stepped.price > named.price or stepped.rest_m > RIVAL * named.rest_m:
+    if stepped.price > named.price or stepped.residual_rms_m > RIVAL * named.residual_rms_m:
         return named
-    if RIVAL * stepped.rest_m < named.rest_m:
+    if RIVAL * stepped.residual_rms_m < named.residual_rms_m:
         return stepped
-    return with_rival_steps(named, stepped.causes)
+    return with_alternative_steps(named, stepped.causes)
 
 
-def with_rival_steps(named: Explanation, rivals: Sequence[Deviation]) -> Explanation:
-    """Return an explanation in which its step, or one of others that make the same rows, is the cause."""
+def with_alternative_steps(named: Explanation, rivals: Sequence[Deviation]) -> Explanation:
+    """Return an explanation in which the cause is its own step, or one of some rivals that make the same rows."""
     own = [cause for cause in named.causes if cause.stage == "integrator"]
     if len(own) != 1:
         return named
@@ -416,7 +456,7 @@ def with_rival_steps(named: Explanation, rivals: Sequence[Deviation]) -> Explana
     if len(steps) == 1:
         return named
     if len(steps) > ALTERNATIVES:
-        step = loose(own[0].size_m)
+        step = unnamed_step_error(own[0].size_m)
     else:
         alternatives = [Alternative(cause.id, cause.text) for cause in steps.values()]
         step = one_of(alternatives, own[0].size_m)

@@ -31,11 +31,13 @@ _NO_RISE = 1e-3  # of the bob's: heights that differ by less are constant
 _ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
 ROUGHLY = 0.03  # of the distance from the vertical: how far a release in another unit may be off
 _SINGLE = 1e-6  # of the span: rounding of times in single precision
-_ROUGH_FIT = 1e-2  # of the release's distance: what phasors may leave that show when a clock began
+_ROUGH_FIT = (
+    1e-2  # of the release's distance: largest residual of phasors that show when a clock began
+)
 _SHIFTS = 3  # rows by which a clock may be off
 _SHORTEST = 12  # rows that show a frequency
 _FIRST = 400  # rows that are used for it
-_UNFIT = 0.05  # of the distance from the vertical: what two phasors may leave of them
+_UNFIT = 0.05  # of the distance from the vertical: the largest residual of two phasors
 _SAME_FREQUENCY = 0.1  # relative difference from the scene's, in the right unit of time
 _DECAYS = 0.1  # of its frequency: a swing that decays or grows faster shows no unit of time
 _UNITS_OF_LENGTH = ("cm", "mm", "km", "ft", "in")
@@ -219,9 +221,9 @@ def _with_heights(
     column = printed * counted.sign - counted.shift
     corrected = rows
     if counted.text:
-        word = "z_down" if counted.sign < 0 else "z_from_lowest"
+        convention_id = "z_down" if counted.sign < 0 else "z_from_lowest"
         size = float(np.abs(column - printed).max())
-        corrected = corrected.changed(Deviation(word, counted.text, size))
+        corrected = corrected.changed(Deviation(convention_id, counted.text, size))
     if order != _VERTICALS[0]:
         text = f"calls the vertical {'xyz'[order[2]]}"
         corrected = corrected.changed(Deviation("vertical_is_not_z", text, length))
@@ -398,11 +400,11 @@ def _in_metres(rows: FileRows, unit: _UnitOfLength, length: float) -> FileRows:
 
 def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> FileRows:
     """Return the rows with the horizontal axes in another order and with other signs."""
-    word, text = AXES_SAID[order, signs]
+    convention_id, text = AXES_SAID[order, signs]
     if not text:
         return rows
     plane = rows.positions[:, order] * np.array(signs)
-    convention = Deviation(word, text, largest(plane - rows.plane))
+    convention = Deviation(convention_id, text, largest(plane - rows.plane))
     return rows.changed(convention, positions=np.column_stack([plane, rows.positions[:, 2:]]))
 
 
@@ -584,8 +586,8 @@ def _from_release(passage: _ReleasePassage, shift_s: float, size_m: float) -> Fi
         distance = "one row" if rows_late == 1 else f"{rows_late} rows"
         side = "ahead of" if passage.parts > 0 else "behind"
         text = f"has its clock {side} its rows by {distance} ({abs(shift_s):.6g} s)"
-        word = "rows_late" if passage.parts < 0 else "rows_early"
-        rows = rows.changed(Deviation(word, text, size_m))
+        convention_id = "rows_late" if passage.parts < 0 else "rows_early"
+        rows = rows.changed(Deviation(convention_id, text, size_m))
     times = rows.times - shift_s
     kept = times >= 0
     return replace(rows, times=times[kept], positions=rows.positions[kept], starts=True)

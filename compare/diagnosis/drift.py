@@ -1,6 +1,6 @@
-"""The error of an integrator that has no name: typed causes are read beside a phase and an amplitude that drift.
+"""The step error of an unknown method: other causes are read beside a phase and an amplitude that drift.
 
-In a linear motion the steps of any method make the swing a little too fast or too slow, and let it decay or grow. Typed
+In a linear motion the steps of any method make the swing a little too fast or too slow, and let it decay or grow. Other
 causes are read from what a drift of phase and amplitude does not change.
 """
 
@@ -24,21 +24,21 @@ def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]
 
     Args:
         case: the file.
-        near: readings without a drift; their typed causes are tried beside one.
+        near: readings without a drift; those of their causes that are not like a drift are tried beside one.
     """
-    typed = [_without_drift(reading) for reading in near]
+    candidates = [_without_drift(reading) for reading in near]
     readers = {reading.reader.right.kind: reading.reader for reading in reversed(near)}
     for kind, reader in readers.items():
-        typed += _typed_beside_drift(case, kind, reader)
+        candidates += _unlike_a_drift(case, kind, reader)
     different: dict[tuple[str, frozenset[str]], CauseReading] = {}
-    for reading in typed:
+    for reading in candidates:
         texts = frozenset(cause.text for cause in reading.causes)
         different.setdefault((reading.program.kind, texts), reading)
     beside = [_with_drift(reading) for reading in different.values()]
     return [polished(case, reading) for reading in beside if reading is not None]
 
 
-def _typed_beside_drift(case: FileCase, kind: str, reader: Reader) -> list[CauseReading]:
+def _unlike_a_drift(case: FileCase, kind: str, reader: Reader) -> list[CauseReading]:
     """Return the likeliest readings of a family, of causes that are not like a drift."""
     catalogue = [cause for cause in causes_of(case, kind) if not is_like_a_drift(cause.id)]
     blind = replace(reader, fit=_blind(reader))

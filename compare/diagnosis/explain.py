@@ -16,7 +16,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from .approximated import of_approximation
 from .case import AS_IF, Explanation, FileCase, FileRows
-from .claims import by_need, explanation_of, likelier, nothing, with_rival_step
+from .claims import by_growth, explanation_of, likelier, likelier_step, no_explanation
 from .conventions import (
     ROUGHLY,
     axes,
@@ -38,7 +38,7 @@ from .slips import of_slip
 from .stepped import of_loops, of_steps
 
 RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))
-# Conventions that are no facts of the printed numbers: what is left without them decides. A unit of time is not among
+# Conventions that are no facts of the printed numbers: the residual without them decides. A unit of time is not among
 # them: without it the swing would be 60 times as fast as the scene's, or as slow.
 QUESTIONED = RENAMED | {
     "unit_of_length",
@@ -133,7 +133,7 @@ class KnownScene:
         Args:
             times: as in the file.
             columns: x, y and perhaps z as in the file.
-            without: words of conventions that the file is taken not to have.
+            without: ids of conventions that the file is taken not to have.
         """
         rows = heights(self.printed(times, columns), self.right.length)
         if {"unit_of_length", "angles"}.isdisjoint(without):
@@ -195,13 +195,13 @@ class _File:
         """Return the first good explanation of rows."""
         return first_good_explanation(self.case(rows), self.problem.scene)
 
-    def need_of(self, rows: FileRows, explanation: Explanation) -> float:
-        """Return how many times as much an explanation leaves of other rows, its numbers fitted again."""
+    def growth_for(self, rows: FileRows, explanation: Explanation) -> float:
+        """Return the factor by which the residual of an explanation grows for other rows, its numbers fitted again."""
         case = self.case(rows)
-        left = case.rows.positions - case.truth
+        residuals = case.rows.positions - case.truth
         if explanation.reading is not None:
-            left = case.left(polished(case, explanation.reading).program)
-        return Claim(case, left).rest / explanation.rest_m
+            residuals = case.residuals(polished(case, explanation.reading).program)
+        return Claim(case, residuals).residual_rms_m / explanation.residual_rms_m
 
 
 def _explained(file: _File, without: frozenset[str] = frozenset()) -> Explanation:
@@ -215,16 +215,16 @@ def _explained(file: _File, without: frozenset[str] = frozenset()) -> Explanatio
     conventions = []
     doubtful = []
     for convention in best.conventions:
-        said: Deviation | None = convention
+        finding: Deviation | None = convention
         if convention.id in QUESTIONED:
             rows_without = file.rows(without | {convention.id})
-            said = by_need(convention, file.need_of(rows_without, best))
-        if said is None and convention.id not in without:
+            finding = by_growth(convention, file.growth_for(rows_without, best))
+        if finding is None and convention.id not in without:
             return _explained(file, without | {convention.id})
-        if said is convention:
+        if finding is convention:
             conventions.append(convention)
-        elif said is not None:
-            doubtful.append(said)
+        elif finding is not None:
+            doubtful.append(finding)
     best = replace(best, conventions=tuple(conventions), causes=(*best.causes, *doubtful))
     return _with_slip(file, rows, best)
 
@@ -268,7 +268,7 @@ def _with_best_conventions(file: _File, rows: FileRows) -> tuple[Explanation, Fi
 
 
 def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:
-    """Return an explanation with the slip that explains what it leaves, or with what else the rows show."""
+    """Return an explanation with the slip that explains its residual, or with what else the rows show."""
     simple = {cause.stage for cause in best.known} <= {"gravity", "model"}
     unknown = simple and not best.explains
     is_loose = any(cause.id.endswith("integrator_loose") for cause in best.causes)
@@ -276,7 +276,7 @@ def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:
         return best
     # one term of a formula, as no integrator changes it
     constants = constants_in_double(file.problem.scene.exact)
-    slipped = of_slip(file.case(rows), rows, constants, best.rest_m)
+    slipped = of_slip(file.case(rows), rows, constants, best.residual_rms_m)
     if slipped is not None:
         return replace(slipped, conventions=best.conventions)
     if best.known:
@@ -287,7 +287,7 @@ def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:
 def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
-        return nothing(case)
+        return no_explanation(case)
     named, best = explanation_of(case, readings_of(case))
     if best is None or not named.causes:
         other = of_steps(case, None) or of_formula(case) or of_approximation(case, scene)
@@ -298,12 +298,12 @@ def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
     roughly = program.method is not None and (program.kind == "sphere" or not best.is_exact)
     if roughly or not named.explains:
         stepped = of_steps(case, best.reading)
-        if stepped is not None and stepped.rest_m <= named.rest_m:
+        if stepped is not None and stepped.residual_rms_m <= named.residual_rms_m:
             return stepped
     elif program.method is not None:
         loop = of_loops(case)
         if loop is not None:
-            named = with_rival_step(named, loop)
+            named = likelier_step(named, loop)
     if named.explains and all(cause.stage != AS_IF for cause in named.causes):
         return named
     approximation = of_approximation(case, scene)

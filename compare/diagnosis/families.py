@@ -27,7 +27,7 @@ _DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps: the next one after each step tha
 _SEEN = 1e-6
 # in scales: how far each number of theta may be from its guess
 _WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)
-# of the amplitude: a fit that leaves more of a window is not continued in the next
+# of the amplitude: a fit with a larger residual in a window is not continued in the next
 _HOPELESS = 0.05
 _WINDOWS = 8.0  # ratio of the length of a window to that of the one before
 
@@ -39,7 +39,7 @@ class FamilyFit:
     Attributes:
         kind: of the family: sphere; linear; or angle, linear in the angle.
         theta: the best values, in the order of `NAMES`.
-        rest: root mean square of the residuals in m.
+        residual_rms_m: root mean square of the residuals in m.
         free: indices of the numbers that were fitted.
         slopes: d rows / d theta for these, over sqrt(rows), so that |slopes @ change| is a root
             mean square in m.
@@ -47,7 +47,7 @@ class FamilyFit:
 
     kind: str
     theta: Array
-    rest: float
+    residual_rms_m: float
     free: tuple[int, ...]
     slopes: Array
 
@@ -188,7 +188,7 @@ def fit_pendulum(
     best, guess = _nearest_of_equals(first, fits, guesses)
     size = float(np.abs(case.rows.plane).max())
     for part in longer:
-        if not best.rest <= _HOPELESS * float(np.abs(part.rows.plane).max()):
+        if not best.residual_rms_m <= _HOPELESS * float(np.abs(part.rows.plane).max()):
             return None
         effects = np.linalg.norm(best.slopes * case.scales, axis=0) * _WINDOWS
         nudges = np.clip(_SEEN * size / np.maximum(effects, 1e-300), 1e-13, 1e-2)
@@ -197,18 +197,22 @@ def fit_pendulum(
         residuals = [_residual_m(part, pendulum, theta) for theta in starts]
         start = starts[first_least(residuals, part.resolution)]
         best = _WindowFit(part, pendulum, guess, nudges).best(start)
-    return best if best.rest <= _HOPELESS * size else None
+    return best if best.residual_rms_m <= _HOPELESS * size else None
 
 
 def _nearest_of_equals(
     case: FileCase, fits: Sequence[FamilyFit], guesses: Sequence[Array]
 ) -> tuple[FamilyFit, Array]:
-    """Return the fit that leaves least, and its guess.
+    """Return the fit with the smallest residual, and its guess.
 
-    Of fits that leave as little, it is the nearest to its guess.
+    Of fits with equal residuals, it is the nearest to its guess.
     """
-    enough = EQUAL * max(min(fit.rest for fit in fits), case.resolution)
-    equals = [(fit, guess) for fit, guess in zip(fits, guesses, strict=True) if fit.rest <= enough]
+    enough = EQUAL * max(min(fit.residual_rms_m for fit in fits), case.resolution)
+    equals = [
+        (fit, guess)
+        for fit, guess in zip(fits, guesses, strict=True)
+        if fit.residual_rms_m <= enough
+    ]
     if not equals:
         return fits[0], guesses[0]
     moves = [
@@ -218,7 +222,7 @@ def _nearest_of_equals(
 
 
 def _residual_m(case: FileCase, pendulum: SphericalPendulum, theta: Array) -> float:
-    """Return the root mean square in m that a pendulum leaves; infinity if theta has no motion."""
+    """Return the root mean square in m of a pendulum's residuals; infinity if theta has no motion."""
     rows = case.rows
     residual_m = rms(rows.positions - pendulum.rows(theta, rows.times, rows.positions.shape[1]))
     return residual_m if math.isfinite(residual_m) else math.inf

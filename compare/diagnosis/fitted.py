@@ -21,7 +21,7 @@ CLOSE = 0.5
 # decades above the best reading within which others are polished before they are compared
 NEAR = 1.0
 POLISHED = 3  # steps by which fitted numbers are moved
-BETTER = 0.9  # of what was left, for a step that is taken
+BETTER = 0.9  # of the residual before it: a step with a larger one is not taken
 # decades by which a simpler family has to be better
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}
 ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
@@ -66,10 +66,10 @@ def readings_of(case: FileCase, stepped: bool = False) -> list[CauseReading]:
     run = ranked(case, readers_of(case, fits), catalogue)
     if not run:
         return []
-    # below the tolerance a search does not look any further: if there is more to be found, it is told to
-    least = min(fit.rest for fit in fits)
+    # a search ends at its floor, the tolerance; it is repeated with a lower one if residuals may become smaller
+    least = min(fit.residual_rms_m for fit in fits)
     finest = max(case.resolution, least)
-    if min(reading.rest for reading in run) > RIVAL * finest:
+    if min(reading.residual_rms_m for reading in run) > RIVAL * finest:
         run += ranked(case, readers_of(case, fits, finest), catalogue)
     for reading in run[:LIKELIEST]:
         run += same_motions(case, reading, catalogue(reading.program.kind))
@@ -83,17 +83,18 @@ def same_motions(
 
     In each of these, further causes may have others in their place.
     """
-    seen = {_words(reading)}
+    seen = {_cause_ids(reading)}
     waiting = [reading]
     while waiting:
         for other in _with_one_exchange(case, waiting.pop(), catalogue):
-            if _words(other) not in seen:
-                seen.add(_words(other))
+            if _cause_ids(other) not in seen:
+                seen.add(_cause_ids(other))
                 waiting.append(other)
                 yield other
 
 
-def _words(reading: CauseReading) -> frozenset[str]:
+def _cause_ids(reading: CauseReading) -> frozenset[str]:
+    """Return the ids of the causes of a reading."""
     return frozenset(cause.id for cause in reading.causes)
 
 
@@ -101,12 +102,12 @@ def _with_one_exchange(
     case: FileCase, reading: CauseReading, catalogue: Sequence[Cause]
 ) -> Iterator[CauseReading]:
     """Yield readings with the other side of one of `SAME_MOTIONS` in place of its one side."""
-    words = _words(reading)
+    cause_ids = _cause_ids(reading)
     for before, after in SAME_MOTIONS:
-        if not before <= words:
+        if not before <= cause_ids:
             continue
         dropped = [cause for cause in reading.causes if cause.id in before]
-        missing = after - words
+        missing = after - cause_ids
         other: CauseReading | None = reading.reader.without(reading, dropped)
         for cause in catalogue:
             if other is not None and cause.id in missing:
@@ -130,9 +131,9 @@ def readers_of(
         fits: of the families.
         floor: as in `Reader`; None for the tolerance's, or that of the fits.
     """
-    least = min((fit.rest for fit in fits), default=math.inf)
+    least = min((fit.residual_rms_m for fit in fits), default=math.inf)
     floor = floor or max(case.floor, 1.2 * least)
-    near = [fit for fit in fits if not fit.rest > 3 * max(least, floor / 1.2)]
+    near = [fit for fit in fits if not fit.residual_rms_m > 3 * max(least, floor / 1.2)]
     return [Reader(replace(case.right, kind=fit.kind), fit, floor, least) for fit in near]
 
 
@@ -151,7 +152,7 @@ def ranked(
         tried: number of readings of a family that are run.
     """
     run: list[CauseReading] = []
-    for reader in sorted(readers, key=lambda reader: reader.fit.rest):
+    for reader in sorted(readers, key=lambda reader: reader.fit.residual_rms_m):
         least = min(map(_price, run), default=math.inf)
         most = least - EXTRA[reader.right.kind] + CLOSE
         likely = reader.readings(causes_of(reader.right.kind), most)
@@ -160,9 +161,9 @@ def ranked(
             likely += [reader.without(reading, [cause]) for cause in reading.causes]
         # the distance from the fit is linear in theta: what counts is the program itself
         for reading in likely:
-            leaves = rms(case.left(reading.program))
-            if math.isfinite(leaves):
-                run.append(reader.scored(reading.causes, reading.program, leaves))
+            residual_m = rms(case.residuals(reading.program))
+            if math.isfinite(residual_m):
+                run.append(reader.scored(reading.causes, reading.program, residual_m))
     if not run:
         return []
     near = min(map(_price, run)) + NEAR
@@ -177,7 +178,7 @@ def _is_determined(case: FileCase, reading: CauseReading) -> bool:
 
 
 def polished(case: FileCase, reading: CauseReading) -> CauseReading:
-    """Return the best reading with its fitted numbers moved to where its program, run, leaves least.
+    """Return the best reading with its fitted numbers moved to where the residual of its program, run, is least.
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
     """
@@ -194,7 +195,7 @@ def polished(case: FileCase, reading: CauseReading) -> CauseReading:
 
 
 def adjusted_to(case: FileCase, program: Program, names: Sequence[str]) -> Program:
-    """Return a program with some of its numbers moved to where it leaves least of the rows of a case."""
+    """Return a program with some of its numbers moved to where its residual in the rows of a case is least."""
     goal = case.rows.positions
     made, _ = adjusted(program, names, case.positions, goal, steps=POLISHED, gain=BETTER)
     return made
@@ -247,8 +248,8 @@ class _ModelPart:
 
     def deviation(self, case: FileCase, reading: CauseReading, size_m: float) -> Deviation:
         """Return it as a finding; it moves the bob by a size in m."""
-        word, text = MODELS[self.kind]
-        return Deviation(word, text, size_m, self.stage)
+        model_id, text = MODELS[self.kind]
+        return Deviation(model_id, text, size_m, self.stage)
 
 
 @dataclass(frozen=True)
@@ -292,14 +293,15 @@ def model_of(
     kind: str, right: Program, causes: Sequence[Deviation], exact: float, costs: float
 ) -> NamedModel | None:
     """Return the model that causes make up; None if one of them is no simplification with a name."""
-    words = [cause.id for cause in causes]
+    cause_ids = [cause.id for cause in causes]
     if kind != "sphere":
         model, _ = MODELS[kind]
-        words = [model, *(word for word in words if word != model)]
-    if not words or any(word not in TITLES for word in words):
+        others = [cause_id for cause_id in cause_ids if cause_id != model]
+        cause_ids = [model, *others]
+    if not cause_ids or any(cause_id not in TITLES for cause_id in cause_ids):
         return None
     titles = dict(TITLES)
     if right.gravity_reading == "effective":
         titles["no_centrifugal"] = TITLES["uniform_gravity"]
-    text = ", ".join(titles[word] for word in words)
-    return NamedModel("+".join(words), text, exact, costs)
+    text = ", ".join(titles[cause_id] for cause_id in cause_ids)
+    return NamedModel("+".join(cause_ids), text, exact, costs)

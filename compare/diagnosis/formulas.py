@@ -24,7 +24,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import gauss_newton, solved
 from .case import Explanation, FileCase, FileRows
-from .claims import explanation_of, tested
+from .claims import explanation_of, graded
 from .families import windows
 from .fitted import readings_of
 from .hypotheses import Claim
@@ -39,7 +39,7 @@ _PRODUCTS = (
 )
 _LEAST = 24  # rows, twice the numbers that are fitted
 _STEPS = 12  # Gauss-Newton steps in one window at most
-_GAIN = 0.9  # of the residual: a step that leaves more is not taken
+_GAIN = 0.9  # of the residual before it: a step with a larger one is not taken
 _WINDOW = 4.0  # ratio of the length of a window to that of the one before
 _HELD = 1e-9  # of the amplitude: holds a rate that a window does not determine
 _SAME = 1e-6  # of the amplitude: coefficients that differ by less are equal
@@ -90,7 +90,7 @@ class _Formula:
     coefficients: Array
 
     def residuals(self, rows: FileRows) -> Array:
-        """Return what it leaves of x and y of some rows in m, shape (rows, 2)."""
+        """Return x and y of some rows less its own in m, shape (rows, 2)."""
         return rows.plane - _basis(rows.times, self.omega, self.beta) @ self.coefficients
 
     @property
@@ -140,10 +140,10 @@ class _FormulaClaim(Claim):
         return 2 + self.formula.coefficients.size
 
     def foreseen(self, count: int) -> Array:
-        """Return what the formula that is fitted to the first `count` rows leaves in m."""
+        """Return the residuals in m of the formula that is fitted to the first `count` rows."""
         formula = _fit_formula(self.case.part(count).rows, self.case.right)
         if formula is None:
-            return np.full_like(self.left, np.inf)
+            return np.full_like(self.residuals, np.inf)
         return formula.residuals(self.case.rows)
 
 
@@ -157,7 +157,7 @@ def of_formula(case: FileCase) -> Explanation | None:
     if formula is None:
         return None
     claim = _FormulaClaim(flat, formula.residuals(flat.rows), formula)
-    # a formula leaves rounding
+    # the residual of a formula is rounding
     if not claim.is_exact:
         return None
     size = float(np.hypot(flat.right.x, flat.right.y))
@@ -184,7 +184,7 @@ def _sentence_on(claim: Claim, slips: list[_Slip], size: float) -> str:
     """
     text = "; ".join(slip.sentence(size) for slip in slips)
     proposed = Deviation("slip", f"follows a closed formula with a slip: {text}", stage="model")
-    slip = tested(claim, proposed, claim.case.error)
+    slip = graded(claim, proposed, claim.case.error)
     return f"It {slip.text}." if slip is proposed else ""
 
 
@@ -202,10 +202,10 @@ def _explanation_with(case: FileCase, formula: _Formula, slips: list[_Slip]) -> 
 
 
 def _fit_formula(rows: FileRows, right: Program) -> _Formula | None:
-    """Return the formula that leaves least, starting from the rates of the scene's own swing.
+    """Return the formula with the smallest residual, starting from the rates of the scene's own swing.
 
     None if there are too few rows. The span grows, so that no turn of the phase is lost. A formula
-    and its mirror image leave as much: one of them is returned.
+    and its mirror image have the same residual: one of them is returned.
     """
     beta = right.rate * math.sin(math.radians(right.latitude))
     if len(rows.times) < _LEAST or not right.g or not beta:

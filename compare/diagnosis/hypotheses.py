@@ -2,7 +2,7 @@
 
 Causes of a program are one kind of explanation; other modules have further kinds.
 
-A `Claim` knows what it leaves of the rows, and answers what each test asks. `claims.py` decides by the answers.
+A `Claim` knows its residuals, and answers what each test asks. `claims.py` decides by the answers.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ from .thresholds import (
 
 
 def has_few_digits(value: float, doubt: float, most: int = MOST_DIGITS) -> bool:
-    """Return whether a person may have typed a number, since its shortest decimal within a doubt is no accident."""
+    """Return whether a number is round: it has as few digits as a number that a person types.
+
+    Its shortest decimal within a doubt must be no accident. A fitted number that is not round is *arbitrary*.
+    """
     doubt = max(doubt, 2.0**-50 * abs(value))
     if abs(value) <= doubt:
         return True
@@ -48,22 +51,22 @@ class Claim:
 
     Attributes:
         case: the file.
-        left: what it leaves in m, shape (rows, 2 or 3).
+        residuals: the rows less its own in m, shape (rows, 2 or 3).
     """
 
     case: FileCase
-    left: Array
+    residuals: Array
 
     @property
-    def rest(self) -> float:
-        """Root mean square of the residual in m; residuals below rounding count as equal."""
-        size = rms(self.left)
+    def residual_rms_m(self) -> float:
+        """Root mean square of the residuals in m, at least the resolution: below it, residuals are rounding."""
+        size = rms(self.residuals)
         return max(size, self.case.resolution) if math.isfinite(size) else math.inf
 
     @property
     def largest_m(self) -> float:
         """Largest residual in m."""
-        size = largest(self.left)
+        size = largest(self.residuals)
         return size if math.isfinite(size) else math.inf
 
     @property
@@ -73,20 +76,23 @@ class Claim:
 
     @property
     def is_exact(self) -> bool:
-        """Whether what it leaves is rounding: as a formula, or the steps of the right method, leave it."""
-        return self.rest <= NEEDED * self.case.resolution
+        """Whether the residual is rounding, as that of a formula, or of the steps of the right method, is.
+
+        It may be NEEDED times the resolution. A `Hypothesis` with arbitrary numbers has a stricter limit.
+        """
+        return self.residual_rms_m <= NEEDED * self.case.resolution
 
     @property
     def leaves_little(self) -> bool:
-        """Whether it explains the rows, or what it leaves, which is stated then, is a small part of their error."""
-        return self.explains or NEEDED**2 * rms(self.left) <= self.case.error
+        """Whether it explains the rows, or the residual, which is stated then, is a small part of their error."""
+        return self.explains or NEEDED**2 * rms(self.residuals) <= self.case.error
 
     @property
     def is_harmless(self) -> bool:
         """Whether the residual of each column is at most a few times the file's own error there."""
         errors = np.abs(self.case.rows.positions - self.case.truth).max(axis=0)
         own = np.maximum(errors, self.case.resolution)
-        return bool((np.abs(self.left).max(axis=0) <= RIVAL * own).all())
+        return bool((np.abs(self.residuals).max(axis=0) <= RIVAL * own).all())
 
     @property
     def free_numbers(self) -> int:
@@ -94,20 +100,20 @@ class Claim:
         return 0
 
     def foreseen(self, count: int) -> Array:
-        """Return the residual in m if the numbers are fitted to the first `count` rows, shape as `left`."""
-        return self.left
+        """Return the residuals in m if the numbers are fitted to the first `count` rows, shape as `residuals`."""
+        return self.residuals
 
     def predicts(self) -> bool:
-        """Return whether its numbers, fitted to the first rows, meet the others as well as all do."""
+        """Return whether its numbers, fitted to the first rows, predict the others as well as if fitted to all."""
         times = self.case.rows.times
         count = int(np.searchsorted(times, times[0] + FIRST_PART * (times[-1] - times[0])))
         if not self.free_numbers or not 0 < count < len(times):
             return True
         later_m = rms(self.foreseen(count)[count:])
-        return later_m <= RIVAL * max(rms(self.left[count:]), self.case.resolution)
+        return later_m <= RIVAL * max(rms(self.residuals[count:]), self.case.resolution)
 
     def enough_rows(self) -> bool:
-        """Return whether the rows are as many as can say anything of its numbers, and last for a swing."""
+        """Return whether the rows are enough to determine its numbers, and last for a swing."""
         if not self.free_numbers:
             return True
         rows = self.case.rows
@@ -134,15 +140,15 @@ class Hypothesis(Claim):
     @classmethod
     def of(cls, case: FileCase, reading: CauseReading) -> Hypothesis:
         """Return the hypothesis of a reading, its program run."""
-        return cls(case, case.left(reading.program), reading)
+        return cls(case, case.residuals(reading.program), reading)
 
     @property
-    def words(self) -> frozenset[str]:
+    def cause_ids(self) -> frozenset[str]:
         """The ids of its causes, and of its model."""
-        words = {cause.id for cause in self.reading.causes}
+        cause_ids = {cause.id for cause in self.reading.causes}
         if self.reading.program.kind != "sphere":
-            words.add(MODELS[self.reading.program.kind][0])
-        return frozenset(words)
+            cause_ids.add(MODELS[self.reading.program.kind][0])
+        return frozenset(cause_ids)
 
     @property
     def numbers(self) -> list[Cause]:
@@ -150,45 +156,51 @@ class Hypothesis(Claim):
         return [cause for cause in self.reading.causes if cause.free and not self._shown(cause)]
 
     @property
-    def untyped(self) -> list[Cause]:
-        """Those whose number nobody typed; beside such an input, a rate that is typed as a factor alone is one too."""
-        inputs = [cause for cause in self.numbers if cause not in DRIFT]
-        untyped = [cause for cause in inputs if not self._is_typed(cause)]
-        if all(cause.stage == "integrator" for cause in untyped):
-            return untyped
-        return [cause for cause in inputs if cause in untyped or self._is_factor(cause)]
+    def arbitrary(self) -> list[Cause]:
+        """The causes with an arbitrary number, a step error of unknown method aside.
+
+        Beside an arbitrary input, a rate that is round only as a factor is arbitrary too.
+        """
+        candidates = [cause for cause in self.numbers if cause not in DRIFT]
+        arbitrary = [cause for cause in candidates if not self._is_round(cause)]
+        if all(cause.stage == "integrator" for cause in arbitrary):
+            return arbitrary
+        return [cause for cause in candidates if cause in arbitrary or self._is_factor(cause)]
 
     @property
-    def untyped_inputs(self) -> list[Cause]:
-        """Those of them that are no step."""
-        return [cause for cause in self.untyped if cause.stage != "integrator"]
+    def arbitrary_inputs(self) -> list[Cause]:
+        """The causes with an arbitrary number that are no step."""
+        return [cause for cause in self.arbitrary if cause.stage != "integrator"]
 
     @property
     def drifts(self) -> bool:
-        """Whether an integrator's error is among its causes that has no name."""
+        """Whether a step error of unknown method is among its causes."""
         return DRIFT[0] in self.reading.causes
 
     @cached_property
     def undrifted(self) -> Hypothesis:
-        """The hypothesis without that error, nothing fitted again."""
+        """The hypothesis without its step error of unknown method, nothing fitted again.
+
+        Its residual shows how much of the motion its other causes explain by themselves.
+        """
         reading = self.reading.reader.without(self.reading, DRIFT)
         return Hypothesis.of(self.case, reading)
 
     @property
-    def names_no_step(self) -> bool:
-        """Whether two of its numbers that nobody typed, or a step and one of them, are a drift by other names.
+    def is_drift_in_disguise(self) -> bool:
+        """Whether two arbitrary numbers, or one and a step, only imitate a drift of phase and amplitude.
 
-        Two numbers of a right program leave rounding; what a solver does leaves more.
+        If a program had two such numbers, its residual would be rounding; that of an imitated drift is larger.
         """
         if self.is_exact:
             return False
-        alike = [cause for cause in self.untyped if cause.id in LIKE_A_DRIFT]
+        alike = [cause for cause in self.arbitrary if cause.id in LIKE_A_DRIFT]
         steps = [cause for cause in self.numbers if cause.stage == "integrator"]
         return not self.drifts and len(alike) + len(steps) > 1
 
     @property
     def price(self) -> int:
-        """One for each change, named model, or number of few digits; two for any other number, and for a factor."""
+        """One for each change, named model, or round number; two for an arbitrary number, and for a factor."""
         has_model = self.reading.program.kind != "sphere"
         price = len(self.reading.causes) + has_model
         for cause in self.numbers:
@@ -198,7 +210,7 @@ class Hypothesis(Claim):
 
     def _has_other_sign(self, cause: Cause) -> bool:
         """Return whether the number of an input has another sign than the scene's, and no other cause says so."""
-        if cause.stage == "integrator" or "hemisphere" in self.words:
+        if cause.stage == "integrator" or "hemisphere" in self.cause_ids:
             return False
         scene = float(getattr(self.case.right, cause.free))
         return self.reading.value(cause) * scene < 0
@@ -209,15 +221,18 @@ class Hypothesis(Claim):
             return True
         if cause.stage == "integrator" and self.reading.program.kind == "sphere":
             return False
-        return not self._is_typed(cause, factors=False)
+        return not self._is_round(cause, factors=False)
 
     def _shown(self, cause: Cause) -> bool:
         """Return whether row 0 has the number itself: the place of the release."""
         rows = self.case.rows
         return cause.id in ("release.x", "release.y") and rows.starts and rows.times[0] == 0
 
-    def _is_typed(self, cause: Cause, factors: bool = True) -> bool:
-        """Return whether a person may have typed a number, or the factor by which a rate differs from the scene's."""
+    def _is_round(self, cause: Cause, factors: bool = True) -> bool:
+        """Return whether the number of a cause is round; of a step, whether it divides the spacing of the rows.
+
+        If `factors`, a rate is round as well if its factor is: its ratio to the scene's.
+        """
         value = self.reading.value(cause)
         doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
         if cause.stage == "integrator":
@@ -228,7 +243,7 @@ class Hypothesis(Claim):
         return has_few_digits(value, doubt) or (factors and self._is_factor(cause))
 
     def _is_factor(self, cause: Cause) -> bool:
-        """Return whether a number is the scene's rate times a factor that a person may have typed."""
+        """Return whether a number is the scene's rate times a round factor."""
         if cause.free != "rate":
             return False
         doubt = self.reading.reader.uncertainty(self.reading, cause, self.case.resolution)
@@ -238,9 +253,9 @@ class Hypothesis(Claim):
 
     @property
     def _steps_roughly(self) -> bool:
-        """Return whether a step of its own leaves more than rounding, and so moves numbers that are like a drift."""
+        """Whether the residual beside a step is more than rounding; the numbers that are like a drift absorb a part."""
         stepped = any(cause.stage == "integrator" for cause in self.reading.causes)
-        return stepped and self.rest > NEEDED * self.case.resolution
+        return stepped and self.residual_rms_m > NEEDED * self.case.resolution
 
     def _divides(self, step: float, doubt: float) -> bool:
         """Return whether a step may go into the spacing of the rows a whole number of times."""
@@ -263,58 +278,66 @@ class Hypothesis(Claim):
         mine = float(getattr(self.reading.program, cause.free))
         return abs(rival.reading.value(cause) - mine) <= RIVAL * doubt
 
-    def without(self, word: str) -> Hypothesis:
+    def without(self, cause_id: str) -> Hypothesis:
         """Return the hypothesis without a cause, or without its model, everything else fitted again."""
-        return self.refitted(self.left_out(word).reading)
+        return self.refitted(self.left_out(cause_id).reading)
 
-    def left_out(self, word: str) -> Hypothesis:
+    def left_out(self, cause_id: str) -> Hypothesis:
         """Return the hypothesis without a cause, or without its model, its numbers as they are."""
         reading = self.reading
         kind = reading.program.kind
-        causes = [cause for cause in reading.causes if cause.id == word]
+        causes = [cause for cause in reading.causes if cause.id == cause_id]
         fewer = reading.reader.without(reading, causes)
-        if not causes:  # the word is that of the model
+        if not causes:  # the id is that of the model
             kind = "sphere"
         fewer = replace(fewer, program=fewer.program.changed(kind=kind))
         return Hypothesis.of(self.case, fewer)
 
     def takes_from(self, other: Hypothesis) -> bool:
-        """Return whether a drift takes so much less beside its causes than beside another's that it is no accident."""
-        if not (self.drifts and other.drifts and self.rest <= RIVAL * other.rest):
+        """Return whether the drift beside its causes is far smaller than the one beside another's: no accident."""
+        if not (self.drifts and other.drifts):
             return False
-        return CATALOGUE * self.undrifted.rest < CHANCE * other.undrifted.rest
+        if self.residual_rms_m > RIVAL * other.residual_rms_m:
+            return False
+        # CATALOGUE causes, each as good by accident with probability about a/b: together less likely than CHANCE
+        return CATALOGUE * self.undrifted.residual_rms_m < CHANCE * other.undrifted.residual_rms_m
 
-    def need_of(self, word: str) -> float:
-        """Return how many times the residual grows without a cause, everything else fitted again."""
-        without = self.without(word)
+    def growth_without(self, cause_id: str) -> float:
+        """Return the factor by which the residual grows without a cause, everything else fitted again."""
+        without = self.without(cause_id)
         if self.takes_from(without):
-            return without.undrifted.rest / self.undrifted.rest
-        return without.rest / self.rest
+            return without.undrifted.residual_rms_m / self.undrifted.residual_rms_m
+        return without.residual_rms_m / self.residual_rms_m
 
-    def is_worth_saying(self, word: str) -> bool:
-        """Return whether without a cause more than the tolerance is left, or a drift would take its place.
+    def is_worth_saying(self, cause_id: str) -> bool:
+        """Return whether the residual without a cause exceeds the tolerance, or a drift would take its place.
 
-        Numbers that somebody typed are not fitted again.
+        If all numbers are round, none is fitted again.
         """
-        fitted_again = bool(self.untyped) or self.drifts
-        without = self.without(word) if fitted_again else self.left_out(word)
+        fitted_again = bool(self.arbitrary) or self.drifts
+        without = self.without(cause_id) if fitted_again else self.left_out(cause_id)
         return without.largest_m > self.case.allowed_m or self.takes_from(without)
 
     def is_no_accident(self) -> bool:
         """Return whether hardly any of all known causes would explain the rows as well in place of one of its own.
 
-        Then what it leaves within the tolerance is a program's own error, which a free number takes up as well.
+        Then its residual, within the tolerance, is a program's own error, which an arbitrary number would absorb too.
         """
-        if self.untyped or not self.explains:
+        if self.arbitrary or not self.explains:
             return False
-        least = min((self.without(word).rest for word in self.words), default=0.0)
-        return CATALOGUE * self.rest < CHANCE * least
+        without_each = [self.without(cause_id) for cause_id in self.cause_ids]
+        least = min((hypothesis.residual_rms_m for hypothesis in without_each), default=0.0)
+        # CATALOGUE causes, each as good by accident with probability about a/b: together less likely than CHANCE
+        return CATALOGUE * self.residual_rms_m < CHANCE * least
 
     @property
     def is_exact(self) -> bool:
-        """Whether what it leaves is rounding; numbers that nobody typed take up what another method leaves."""
-        most = 1.0 if self.untyped else NEEDED
-        return self.rest <= most * self.case.resolution
+        """Whether the residual is rounding.
+
+        With arbitrary numbers it may not exceed the resolution: they absorb the residual of a wrong method.
+        """
+        most = 1.0 if self.arbitrary else NEEDED
+        return self.residual_rms_m <= most * self.case.resolution
 
     @property
     def free_numbers(self) -> int:
@@ -327,71 +350,79 @@ class Hypothesis(Claim):
         return super().is_sound and not self.case.pendulum.is_too_fast(self.reading.program.theta())
 
     def foreseen(self, count: int) -> Array:
-        """Return the residual in m if the numbers are fitted to the first `count` rows."""
+        """Return the residuals in m if the numbers are fitted to the first `count` rows."""
         names = [cause.free for cause in self.numbers]
         program = adjusted_to(self.case.part(count), self.reading.program, names)
-        return self.case.left(program)
+        return self.case.residuals(program)
 
 
 def simplest(hypotheses: Sequence[Hypothesis]) -> Hypothesis:
-    """Return the cheapest hypothesis, unless a dearer one leaves far less; those that explain the rows come first."""
+    """Return the cheapest hypothesis, unless a dearer one has a far smaller residual.
+
+    Those that explain the rows come first.
+    """
     enough = [one for one in hypotheses if one.explains] or hypotheses
-    best, *dearer = sorted(enough, key=lambda one: (one.price, len(one.numbers), one.rest))
+    best, *dearer = sorted(
+        enough, key=lambda one: (one.price, len(one.numbers), one.residual_rms_m)
+    )
     for one in dearer:
         less = RIVAL if one.price == best.price else NEEDED
-        better = less * one.rest <= best.rest or one.takes_from(best)
-        if better and not (one.untyped and best.is_no_accident()):
+        better = less * one.residual_rms_m <= best.residual_rms_m or one.takes_from(best)
+        if better and not (one.arbitrary and best.is_no_accident()):
             best = one
     return best
 
 
 def without_needless(best: Hypothesis) -> Hypothesis:
-    """Return a hypothesis without the causes without which about as little is left."""
-    while best.words:
-        needs = {word: best.need_of(word) for word in sorted(best.words)}
-        word = min(needs, key=lambda word: needs[word])
-        if needs[word] >= RIVAL:
+    """Return a hypothesis without the causes without which the residual is about as small."""
+    while best.cause_ids:
+        growths = {cause_id: best.growth_without(cause_id) for cause_id in sorted(best.cause_ids)}
+        least_needed = min(growths, key=lambda cause_id: growths[cause_id])
+        if growths[least_needed] >= RIVAL:
             break
-        best = best.without(word)
+        best = best.without(least_needed)
     return best
 
 
 def worth_saying(best: Hypothesis) -> tuple[Hypothesis, dict[str, float]]:
-    """Return a hypothesis without causes within the tolerance, and the residual's growth without each other one."""
-    while best.words:
-        slight = [word for word in sorted(best.words) if not best.is_worth_saying(word)]
+    """Return a hypothesis without causes within the tolerance, and the residual's growth without each other cause."""
+    while best.cause_ids:
+        slight = [
+            cause_id for cause_id in sorted(best.cause_ids) if not best.is_worth_saying(cause_id)
+        ]
         if not slight:
-            return best, {word: best.need_of(word) for word in best.words}
+            return best, {cause_id: best.growth_without(cause_id) for cause_id in best.cause_ids}
         best = min(map(best.without, slight), key=lambda one: one.largest_m)
     return best, {}
 
 
 def rivals_of(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """Return the other hypotheses that cost no more and leave no more than a few times as much.
+    """Return the other hypotheses that cost no more, and whose residual is at most a few times as large.
 
-    Beside numbers that nobody typed it is enough that one without any explains the rows.
+    If the best one has arbitrary inputs, it is enough that one without arbitrary numbers explains the rows.
     """
     rivals: dict[frozenset[str], Hypothesis] = {}
     for hypothesis in hypotheses:
         if _is_rival(best, hypothesis):
-            rivals.setdefault(hypothesis.words, hypothesis)
-    # few digits beat many
-    if any(rival.untyped for rival in rivals.values()) and best.is_no_accident():
-        return [rival for rival in rivals.values() if not rival.untyped]
+            rivals.setdefault(hypothesis.cause_ids, hypothesis)
+    # round numbers beat arbitrary ones
+    if any(rival.arbitrary for rival in rivals.values()) and best.is_no_accident():
+        return [rival for rival in rivals.values() if not rival.arbitrary]
     return list(rivals.values())
 
 
 def _is_rival(best: Hypothesis, other: Hypothesis) -> bool:
     """Return whether another hypothesis costs no more than the best one, and does about as well by other causes."""
-    if other.words >= best.words or other.words < best.words:
+    # one contains the other
+    if other.cause_ids >= best.cause_ids or other.cause_ids < best.cause_ids:
         return False
-    without_untyped = best.untyped_inputs and not other.untyped and other.explains
-    if not without_untyped and other.rest > RIVAL * best.rest:
+    explains_without_arbitrary = best.arbitrary_inputs and not other.arbitrary and other.explains
+    if not explains_without_arbitrary and other.residual_rms_m > RIVAL * best.residual_rms_m:
         return False
     if best.takes_from(other):
         return False
     if any(best.has_number(other, cause) for cause in other.numbers):
         return False
     # what is the same motion as a step error is a rival of it at any price
-    is_same_motion = all(map(is_like_a_drift, other.words ^ best.words))
+    is_same_motion = all(map(is_like_a_drift, other.cause_ids ^ best.cause_ids))
     return is_same_motion or other.price <= best.price

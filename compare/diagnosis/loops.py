@@ -52,9 +52,9 @@ _TITLES = {
 _FINEST = 1e-4  # ωh: the shortest step that is tried
 _TRIED = 10  # numbers of steps that are tried at a time
 _NEWTON = 8  # Gauss-Newton steps of a fit
-_GAIN = 0.9  # of the residual: a step that leaves more ends a fit
+_GAIN = 0.9  # of the residual before it: a step with a larger one ends a fit
 _LEAST = 24  # rows
-_NEAR = 1e-3  # of the amplitude: the most that two phasors may leave
+_NEAR = 1e-3  # of the amplitude: the largest residual of two phasors
 # indices of theta that are fitted with a number of steps: turn, pull, drag and place of the
 # release; and its velocity, if it is not the scene's
 _FITTED = (2, 3, 4, 5, 6, 7, 8)
@@ -144,7 +144,7 @@ class LinearSteps(SphericalPendulum):
 
     @property
     def title(self) -> tuple[str, str]:
-        """The word of its method, and the name that people use."""
+        """The id of its method, and the name that people use."""
         order = self.method.removesuffix(" factor")
         if order in _NAMED:
             return _NAMED[order], TITLES[_NAMED[order]]
@@ -171,7 +171,7 @@ class LinearSteps(SphericalPendulum):
 
 @dataclass(frozen=True)
 class _LoopFit:
-    """Steps with the theta that fits best, and the root mean square in m that they leave."""
+    """Steps with the theta that fits best, and the root mean square of their residuals in m."""
 
     steps: LinearSteps
     residual_m: float
@@ -231,7 +231,7 @@ class _Search:
     free: tuple[int, ...]
 
     def best(self, order: str) -> _LoopFit:
-        """Return the fit of an order of statements with the number of steps that leaves least."""
+        """Return the fit of an order of statements with the number of steps whose residual is smallest."""
         case = self.case
         fits: dict[int, _LoopFit] = {}
         low = 1

@@ -20,7 +20,7 @@ from ..candidates.candidate import Deviation
 from ..observed.least_squares import solved
 from .case import Explanation, FileCase, largest, rms
 from .causes import shortest_decimal
-from .claims import Alternative, hedged, one_of, tested
+from .claims import Alternative, graded, hedged, one_of
 from .hypotheses import Claim, has_few_digits
 from .phasors import ComplexArray
 from .thresholds import ALTERNATIVES, RIVAL
@@ -39,7 +39,7 @@ class _ColumnMap:
         columns: indices of the columns that it makes.
         made: `made(count)` returns these columns in m, shape (rows, columns), its numbers fitted to
             the first `count` rows.
-        price: one, and one more for each number that nobody typed.
+        price: one, and one more for each arbitrary number.
     """
 
     id: str
@@ -76,11 +76,11 @@ class _MapClaim(Claim):
 
     @property
     def free_numbers(self) -> int:
-        """Its numbers that nobody typed, and which map it is."""
+        """Its arbitrary numbers, and which map it is."""
         return self.map.price
 
     def foreseen(self, count: int) -> Array:
-        """Return what it leaves in m if its numbers are fitted to the first `count` rows."""
+        """Return the residuals in m if its numbers are fitted to the first `count` rows."""
         return self.map.residuals(self.of, count)
 
 
@@ -88,7 +88,7 @@ class _MapClaim(Claim):
 class _FittedNumber:
     """A fitted number: its text, to the digits that are known, and its price.
 
-    The price is 0 for a number that somebody may have typed, else 1.
+    The price is 0 for a round number, and 1 for an arbitrary one.
     """
 
     text: str
@@ -299,7 +299,7 @@ class _Plane:
         degrees = _FittedNumber.of(math.degrees(turn), math.degrees(uncertainty))
         angle = f"{degrees.text} degrees" if radians.price else f"{radians.text} rad"
         text = f"prints x and y turned by {angle}, anticlockwise"
-        # the angle is typed if it has few digits in one of the units
+        # the angle is round if it is so in one of the units
         return self._mapped("turned", text, made, 1 + radians.price * degrees.price)
 
     def _moved(self) -> _ColumnMap:
@@ -407,15 +407,15 @@ def of_observation(case: FileCase) -> Explanation | None:
     for maps in choice.groups:
         claim = _MapClaim.about(case, maps[0])
         size_m = largest(claim.case.rows.positions - claim.case.truth)
-        said = tested(claim, _reported(maps, size_m), claim.case.error)
+        finding = graded(claim, _reported(maps, size_m), claim.case.error)
         # some map makes any few rows
-        if said is None or not claim.enough_rows():
+        if finding is None or not claim.enough_rows():
             return None
-        residuals[:, maps[0].columns] = claim.left
-        if said.stage:
-            doubtful.append(said)
+        residuals[:, maps[0].columns] = claim.residuals
+        if finding.is_convention:
+            certain.append(finding)
         else:
-            certain.append(said)
+            doubtful.append(finding)
     explanation = case.explanation(tuple(doubtful), residuals, int(choice.price))
     return replace(explanation, conventions=(*explanation.conventions, *certain))
 

@@ -30,7 +30,7 @@ from ..observed.least_squares import gauss_newton, solved
 
 ComplexArray = npt.NDArray[np.complex128]
 _STEPS = 30  # Gauss-Newton steps at most
-_GAIN = 0.999  # of the residual: a step that leaves more ends the fit
+_GAIN = 0.999  # of the residual before it: a step with a larger one ends the fit
 _DOUBLE_ROOT = 1e-8  # of a rate: two equal rates are separated by this much
 _OVERFLOW = 1e8  # phasors that grow by a larger factor are not fitted
 
@@ -119,7 +119,7 @@ class Phasors:
 
 @dataclass(frozen=True)
 class PhasorFit:
-    """Two phasors, and the root mean square of what they leave, in the unit of the rows."""
+    """Two phasors, and the root mean square of their residuals, in the unit of the rows."""
 
     phasors: Phasors
     residual: float

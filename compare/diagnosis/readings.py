@@ -1,9 +1,9 @@
 """Read a fit: find the fewest causes whose program has the numbers that the file shows.
 
-Every combination of causes is a point in the space of `theta`; its distance from the fitted point, weighed by how the
-rows answer to each number, is the root mean square in m that it would leave. The search keeps the best combinations of
-one, two, … causes. A cause counts only if it lowers the residual by its cost, so that of two that explain as much the
-one that contains the other loses.
+Every combination of causes is a point in the space of `theta`. Its distance from the fitted point, weighed by how the
+rows answer to each number, is the root mean square residual in m that it would have. The search keeps the best
+combinations of one, two, … causes. A cause counts only if it lowers the residual by its cost, so that of two that
+explain as much the one that contains the other loses.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from .programs import Program
 
 ENOUGH = 5000  # combinations that are tried
 BEAM = 20  # combinations that are kept of each size
-ASIDE = 5  # and beside them, of those that leave least
+ASIDE = 5  # and beside them, of those with the smallest residuals
 MOST = 5  # causes at most
 _MOST_NUMBERS = 3  # that are fitted at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
-PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
+PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error shows none
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
-GAIN = 0.99  # of what was left: a step that leaves more is not taken
+GAIN = 0.99  # of the residual before it: a step with a larger one is not taken
 SMALLEST = {
     "g": 1.0,
     "length": 1.0,
@@ -54,14 +54,14 @@ class CauseReading:
     Attributes:
         causes: of different groups.
         program: the right one with them, fitted numbers in place.
-        rest: root mean square in m that it would leave.
+        residual_rms_m: root mean square residual in m that it would have.
         score: less is better.
-        reader: what the combination was held against.
+        reader: what the combination was compared by.
     """
 
     causes: tuple[Cause, ...]
     program: Program
-    rest: float
+    residual_rms_m: float
     score: float
     reader: Reader
 
@@ -72,13 +72,13 @@ class CauseReading:
 
 @dataclass(frozen=True)
 class Reader:
-    """Holds combinations of causes against a fit.
+    """Compares combinations of causes with a fit.
 
     Attributes:
         right: what a right program computes with, with the family's kind.
         fit: the free fit of that family.
         floor: root mean square in m below which no error needs a cause.
-        least: root mean square in m that the best fit of any family leaves.
+        least: root mean square residual in m of the best fit of any family.
         joint: whether it is of several runs: then fits follow bent valleys, which in one run lead to numbers that are
             not there, and no name is put in place of a number, which may follow the scene.
     """
@@ -91,15 +91,15 @@ class Reader:
 
     def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[CauseReading]:
         """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
-        nothing = self._judged((), self.right)
-        search = _CombinationSearch(self, causes, min(nothing.score, most))
-        best = [nothing]
-        beam = [nothing]
+        without_cause = self._judged((), self.right)
+        search = _CombinationSearch(self, causes, min(without_cause.score, most))
+        best = [without_cause]
+        beam = [without_cause]
         for _ in range(MOST):
             longer = search.longer(beam)
             best += longer[:BEAM]
             # of two mistakes as large as each other, neither lowers the residual by much: those that lower it at all
-            others = sorted(longer[BEAM:], key=lambda reading: reading.rest)
+            others = sorted(longer[BEAM:], key=lambda reading: reading.residual_rms_m)
             beam = [*longer[:BEAM], *others[:ASIDE]]
             if not beam:
                 break
@@ -212,7 +212,7 @@ class Reader:
             *(phase / omega for phase in PHASES),
         ]
         tried = [self._judged(together, program.changed(step=step)) for step in steps if step > 0]
-        return tried[first_least([reading.rest for reading in tried])].program
+        return tried[first_least([reading.residual_rms_m for reading in tried])].program
 
     def _shown(self, program: Program) -> tuple[float, float]:
         """Return ω² and the drag that the rows ask of a program, its release free: other numbers may stand for them."""
@@ -225,18 +225,19 @@ class Reader:
     def drifts(self, case: FileCase, program: Program) -> bool:
         """Return whether phase and amplitude drift beside a program, each by itself, as only an integrator does it."""
         columns = len(self.fit.slopes) // len(case.rows.times)
-        left = case.left(program)[:, :columns] / math.sqrt(len(case.rows.times))
-        off = left.ravel()
+        weighted = case.residuals(program)[:, :columns] / math.sqrt(len(case.rows.times))
+        residuals = weighted.ravel()
 
-        def rest(*numbers: int) -> float:
-            """Return the residual where some numbers of theta are fitted."""
-            slopes = self.fit.slopes[: len(off), numbers]
-            return float(np.linalg.norm(off - slopes @ best_change(slopes, off)))
+        def rms_with(*numbers: int) -> float:
+            """Return the root mean square residual in m if some numbers of theta are fitted."""
+            slopes = self.fit.slopes[: len(residuals), numbers]
+            change = best_change(slopes, residuals)
+            return float(np.linalg.norm(residuals - slopes @ change))
 
         pull = self.fit.free.index(5)
         drag = self.fit.free.index(6)
-        enough = math.hypot(self.floor, self.fit.rest)
-        return rest(pull, drag) <= enough < min(rest(pull), rest(drag))
+        enough = math.hypot(self.floor, self.fit.residual_rms_m)
+        return rms_with(pull, drag) <= enough < min(rms_with(pull), rms_with(drag))
 
     def uncertainty(self, reading: CauseReading, cause: Cause, resolution: float) -> float:
         """Return by how much a fitted number may be off: the residual over how the rows answer to it.
@@ -247,12 +248,14 @@ class Reader:
         nudged = reading.program.changed(**{cause.free: reading.value(cause) + nudge})
         moved = self._off(nudged) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
-        return max(reading.rest, resolution) / answer if answer else math.inf
+        return max(reading.residual_rms_m, resolution) / answer if answer else math.inf
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> CauseReading:
-        off = float(np.linalg.norm(self._off(program)))
-        rest = math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf
-        return self.scored(together, program, rest)
+        distance_m = float(np.linalg.norm(self._off(program)))
+        residual_rms_m = math.inf
+        if math.isfinite(distance_m):
+            residual_rms_m = math.hypot(distance_m, self.fit.residual_rms_m)
+        return self.scored(together, program, residual_rms_m)
 
     def without(self, reading: CauseReading, causes: Sequence[Cause]) -> CauseReading:
         """Return a reading without some of its causes, the other fitted numbers as they were."""
@@ -264,16 +267,18 @@ class Reader:
                 program = program.changed(**{cause.free: reading.value(cause)})
         return self._judged(together, program)
 
-    def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> CauseReading:
-        """Return a combination that leaves `rest`, a root mean square in m, with its score."""
+    def scored(
+        self, together: tuple[Cause, ...], program: Program, residual_rms_m: float
+    ) -> CauseReading:
+        """Return a combination with its root mean square residual in m and its score."""
         low = max(1.2 * self.least, 1e-3 * self.floor)
         score = math.inf
-        if math.isfinite(rest):
-            above = math.log10(max(rest, self.floor) / self.floor)
-            below = math.log10(max(rest, low) / low)
+        if math.isfinite(residual_rms_m):
+            above = math.log10(max(residual_rms_m, self.floor) / self.floor)
+            below = math.log10(max(residual_rms_m, low) / low)
             score = above + BELOW * below
         score += sum(cause.cost for cause in together)
-        return CauseReading(together, program, rest, score, self)
+        return CauseReading(together, program, residual_rms_m, score, self)
 
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
@@ -292,7 +297,7 @@ class _CombinationSearch:
     """A search for combinations of causes.
 
     Attributes:
-        reader: holds them against a fit.
+        reader: compares them with a fit.
         causes: that are combined.
         least: the least score so far.
         tried: number of combinations that were tried.
@@ -333,8 +338,8 @@ class _CombinationSearch:
 
     @cached_property
     def _bound(self) -> float:
-        """The score of no cause that leaves as little as the fit: no combination leaves less."""
-        return self.reader.scored((), self.reader.right, self.reader.fit.rest).score
+        """The score of no cause with the residual of the fit: no combination has a smaller one."""
+        return self.reader.scored((), self.reader.right, self.reader.fit.residual_rms_m).score
 
 
 def _key(reading: CauseReading, cause: Cause) -> frozenset[int]:
@@ -364,8 +369,9 @@ def adjusted(
 
     start = np.array([float(getattr(program, name)) for name in names])
     nudges = np.array([_nudge(program, name) for name in names])
-    values, left = gauss_newton(by_differences(rows_with, goal.ravel(), nudges), start, **options)
-    return program.with_inputs(names, values), left
+    model = by_differences(rows_with, goal.ravel(), nudges)
+    values, distance = gauss_newton(model, start, **options)
+    return program.with_inputs(names, values), distance
 
 
 def _nudge(program: Program, name: str) -> float:
@@ -374,10 +380,10 @@ def _nudge(program: Program, name: str) -> float:
 
 
 def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
-    """Return whether a cause would undo another: no rotation leaves nothing to be said of the Coriolis force."""
+    """Return whether a cause would undo another: without rotation there is no Coriolis force to be wrong."""
     every = (*together, cause)
-    words = {part.id for part in every}
+    cause_ids = {part.id for part in every}
     groups = {part.group for part in every}
-    if "no_rotation" in words:
+    if "no_rotation" in cause_ids:
         return bool(groups & {"latitude", "frame", "coriolis", "turn"})
-    return "no_coriolis" in words and bool(groups & {"frame", "turn"})
+    return "no_coriolis" in cause_ids and bool(groups & {"frame", "turn"})

@@ -27,7 +27,7 @@ class Since:
         worse: what became worse by more than the tolerance; empty if nothing did.
         gains: what became better by more than the tolerance; empty if nothing did.
         changes: what came and what went.
-        left_m: what they leave of both errors, at most, in m; None if it is not known.
+        left_m: the larger error in m that remains without them; None if it is not known.
         complete: whether that is all, down to the tolerance or a tenth of `apart_m`.
     """
 
@@ -110,7 +110,7 @@ class Version:
 def explain_change(
     old: Version, new: Version, apart_m: float, most_m: float
 ) -> tuple[tuple[str, ...], float | None]:
-    """Return what came and what went, and what that leaves of both errors in m; None if unknown.
+    """Return what came and what went, and the larger error in m that remains without it; None if unknown.
 
     Args:
         old: the baseline.
@@ -122,7 +122,7 @@ def explain_change(
     if not texts:
         return (), None
     left_m = max(old.left_m, new.left_m) + _unexplained_m(old.document, new.document)
-    # a step of no name is known by what its error looks like, and leaves it
+    # a step error of unknown method is known by its pattern alone: it is not corrected
     if NEEDED * left_m > apart_m and not any(text.startswith("the step") for text in texts):
         return (), None
     return texts, left_m
@@ -158,7 +158,7 @@ def _visible(
 
     Args:
         deviations: that only one version has.
-        hidden_m: what the causes of the other leave of its error in m: it may hide smaller ones.
+        hidden_m: the error in m that remains of the other without its causes: it may hide smaller ones.
         most_m: how far in m a cause may move the bob that came or went.
     """
     kinds = [_kind(deviation) for deviation in deviations]

@@ -19,7 +19,7 @@ from ..candidates.candidate import Deviation
 from ..observed.least_squares import by_differences, gauss_newton
 from .accelerations import differentiated, proposed, root_mean_square
 from .case import Explanation, FileCase, FileRows, largest
-from .claims import tested
+from .claims import graded
 from .families import windows
 from .forces import TERMS, Place, WrongForce
 from .hypotheses import Claim
@@ -30,7 +30,7 @@ _NUDGE = 1e-6  # by which velocities and coefficients are moved for a slope, of 
 _WINDOWS = 4.0  # ratio of the span of rows that are fitted to the one before
 _SHORTEST = 16  # rows in the first of them
 _NEWTON = 8  # steps in one window
-_GAIN = 0.9  # of the residual: a step that leaves more is not taken
+_GAIN = 0.9  # of the residual before it: a step with a larger one is not taken
 
 
 def of_slip(
@@ -48,29 +48,29 @@ def of_slip(
     if best is None:
         return None
     slip = Deviation("slip", f"has a slip: {best.sentence}", best.size_m, "model")
-    cause = tested(best, slip, without_m)
+    cause = graded(best, slip, without_m)
     if cause is None:
         return None
-    explanation = best.case.explanation((), best.left, best.price)
+    explanation = best.case.explanation((), best.residuals, best.price)
     if cause is slip:
         return replace(explanation, slip=f"I{best.sentence[1:]}.")
     return replace(explanation, causes=(cause,))
 
 
 def _simplest(claims: Sequence[_SlipClaim]) -> _SlipClaim | None:
-    """Return the cheapest claim, unless a dearer one leaves far less; None if another one has other terms.
+    """Return the cheapest claim, unless a dearer one has a far smaller residual; None if another one has other terms.
 
     In a swing whose x and y keep their ratio, a term with x does what one with y does.
     """
     if not claims:
         return None
-    best, *dearer = sorted(claims, key=lambda claim: (claim.price, claim.rest))
+    best, *dearer = sorted(claims, key=lambda claim: (claim.price, claim.residual_rms_m))
     for claim in dearer:
         less = RIVAL if claim.price == best.price else NEEDED
-        if less * claim.rest <= best.rest:
+        if less * claim.residual_rms_m <= best.residual_rms_m:
             best = claim
     for rival in claims:
-        cheap = rival.price <= best.price and rival.rest <= RIVAL * best.rest
+        cheap = rival.price <= best.price and rival.residual_rms_m <= RIVAL * best.residual_rms_m
         if cheap and rival.force.places != best.force.places:
             return None
     return best
@@ -116,7 +116,7 @@ class _SlipClaim(Claim):
         claim = cls(case, case.rows.positions, force)
         for count in windows(times - times[0], _WINDOWS, _SHORTEST, 2 * _SHORTEST):
             claim = claim._fitted_to(count)
-        return claim if math.isfinite(claim.rest) else None
+        return claim if math.isfinite(claim.residual_rms_m) else None
 
     def _fitted_to(self, count: int) -> _SlipClaim:
         """Return the claim with its numbers fitted to the first `count` rows."""
@@ -128,7 +128,7 @@ class _SlipClaim(Claim):
         model = by_differences(rows_with, plane[:count].ravel(), self._nudges)
         numbers, _ = gauss_newton(model, self._numbers, steps=_NEWTON, gain=_GAIN)
         fitted = self._with(numbers)
-        return replace(fitted, left=plane - fitted._rows(len(plane)))
+        return replace(fitted, residuals=plane - fitted._rows(len(plane)))
 
     @property
     def _numbers(self) -> Array:
@@ -156,8 +156,8 @@ class _SlipClaim(Claim):
         return len(self.force.coefficients)
 
     def foreseen(self, count: int) -> Array:
-        """Return the residual in m if the numbers are fitted to the first `count` rows."""
-        return self._fitted_to(count).left
+        """Return the residuals in m if the numbers are fitted to the first `count` rows."""
+        return self._fitted_to(count).residuals
 
     @property
     def price(self) -> int:

@@ -25,7 +25,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .claims import explanation_of, tested, with_rival_steps
+from .claims import explanation_of, graded, with_alternative_steps
 from .families import fit_pendulum
 from .fitted import polished, readings_of
 from .hypotheses import Claim, Hypothesis
@@ -77,7 +77,7 @@ class Steps(SphericalPendulum):
     """A pendulum that a fixed-step method moves, with a whole number of steps from row to row.
 
     Attributes:
-        method: a word of `_FINEST`.
+        method: a key of `_FINEST`.
         steps_per_row: number of steps from row to row.
         spacing_s: time from row to row.
         guess: the theta with which it meets the first swing; empty if unknown.
@@ -96,9 +96,9 @@ class Steps(SphericalPendulum):
 
     @property
     def title(self) -> tuple[str, str]:
-        """The word of its method, and the name that people use."""
-        word = "rk2" if self.method == "heun" else self.method
-        return word, _TITLES[self.method]
+        """The id of its method, and the name that people use."""
+        method_id = "rk2" if self.method == "heun" else self.method
+        return method_id, _TITLES[self.method]
 
     def exact(self, theta: Array, times: Array) -> Array:
         """Return x and y in m of an exact integration, shape (times, 2)."""
@@ -206,7 +206,7 @@ def of_loops(case: FileCase) -> Explanation | None:
     for loop in loops:
         explanation = _explanation_with(flat, loop)
         if explanation is not None:
-            return with_rival_steps(explanation, [step_cause(one) for one in loops])
+            return with_alternative_steps(explanation, [step_cause(one) for one in loops])
     return None
 
 
@@ -263,18 +263,18 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     residuals = rows.positions - motion.rows
     if best is None or not largest(residuals) <= case.enough:
         return None
-    # the steps of a linear model are exact: a residual beyond rounding refutes them; and numbers
-    # that nobody typed absorb the residuals of wrong steps
-    most = 1.0 if best.untyped else NEEDED
+    # the steps of a linear model are exact: a residual beyond rounding refutes them; and arbitrary
+    # numbers absorb the residuals of wrong steps
+    most = 1.0 if best.arbitrary else NEEDED
     if steps.kind == "linear" and not rms(residuals) <= most * case.resolution:
         return None
-    readings = [replace(best.reading, rest=rms(residuals)), *readings]
+    readings = [replace(best.reading, residual_rms_m=rms(residuals)), *readings]
     explanation, _ = explanation_of(motion.taken_from(case), readings)
     without_steps = polished(case, best.reading)
-    step = tested(
+    step = graded(
         Claim(case, residuals),
         step_cause(motion.steps, largest(motion.effect)),
-        rms(case.left(without_steps.program)),
+        rms(case.residuals(without_steps.program)),
     )
     if step is None:
         return None
@@ -284,15 +284,15 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
 
 def step_cause(steps: Steps | LinearSteps, size_m: float = math.nan) -> Deviation:
     """Return the cause that a program takes some steps; they move its rows by `size_m`, if that is known."""
-    word, title = steps.title
+    method_id, title = steps.title
     step_s = steps.step_s
     text = f"integrates with {title} at a step of {step_s:.3g} s"
-    return Deviation(f"integrator_{word}", text, size_m, "integrator", step_s, step_s)
+    return Deviation(f"integrator_{method_id}", text, size_m, "integrator", step_s, step_s)
 
 
 @dataclass(frozen=True)
 class _Candidate:
-    """Steps that may have made the first swing, and the norm in m of what they leave of it."""
+    """Steps that may have made the first swing, and the norm in m of their residuals in it."""
 
     residual_m: float
     steps: Steps
@@ -314,7 +314,7 @@ def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
     candidates: list[_Candidate] = []
     for method in _FINEST:
         candidates += _candidates(swing, method, program)
-    # steps that diverge leave no number
+    # steps that diverge have no finite residual
     candidates = [candidate for candidate in candidates if math.isfinite(candidate.residual_m)]
     candidates.sort(key=lambda candidate: candidate.residual_m)
     sizes = [candidate.residual_m for candidate in candidates]
@@ -361,7 +361,7 @@ class _FirstSwing:
 
     @property
     def exact_residual_m(self) -> float:
-        """Norm of what theta leaves without fixed steps."""
+        """Norm in m of the residuals of theta without fixed steps."""
         rows = self.case.rows
         return float(np.linalg.norm(rows.positions - self.pendulum.rows(self.theta, rows.times, 2)))
 
@@ -384,7 +384,7 @@ def _first_rows(case: FileCase) -> FileCase | None:
 def _candidates(swing: _FirstSwing, method: str, program: Program | None) -> list[_Candidate]:
     """Return the steps of a method that may have made the first swing.
 
-    They are the number of steps that leaves least, with its neighbours, and a program's own number.
+    They are the number of steps with the smallest residual, its neighbours, and a program's own number.
     """
     steps = Steps(**vars(swing.pendulum), method=method, spacing_s=swing.spacing_s)
     finest = int(swing.spacing_s * swing.case.frequency / _FINEST[method])
@@ -423,10 +423,10 @@ def _improved(swing: FileCase, pendulum: SphericalPendulum, theta: Array) -> tup
 
 
 def _closest(swing: _FirstSwing, steps: Steps, low: int, high: int) -> list[_Candidate]:
-    """Return the number of steps from row to row that leaves least, between its neighbours.
+    """Return the number of steps from row to row with the smallest residual, between its neighbours.
 
     The numbers tried lie from `low` to `high`, then ever closer around the best. All are tried
-    with every theta; the one that leaves least is improved after each round.
+    with every theta; the best one is improved after each round.
     """
     thetas = np.column_stack([swing.right, swing.theta])
     slopes = swing.slopes

@@ -4,7 +4,7 @@ Everything else that is a number in this package says how much is tried, or at w
 value of it an explanation may not be found, but none becomes certain.
 """
 
-# Of the tolerance. Smaller residuals are rounding, and steps of a program's own or ours, which no sentence is told by.
+# Of the tolerance. Smaller residuals are rounding, and steps of a program's own or ours: no sentence depends on them.
 # tests/compare/diagnosis/test_claims.py: test_few_digits_are_certain_and_many_are_one_of_several;
 # tests/compare/diagnosis/test_same_words.py
 FINEST = 1e-3
@@ -13,16 +13,17 @@ FINEST = 1e-3
 # tests/compare/diagnosis/test_claims.py: test_what_rounding_leaves_is_explained
 ROUNDED = 1.5
 
-# Times the residual: at least as much is left without a part of an explanation that is certain, everything else
+# Factor by which the residual grows at least without a part of an explanation that is certain, everything else
 # fitted again. If the tolerance is not reached, the error has to shrink by the square of this before anything is named;
-# the same square holds for each typed cause beside a step error of unknown method. Of the difference between two
-# versions, changes may leave no more than the tenth part.
+# the same square holds for each other cause beside a step error of unknown method. Of the difference between two
+# versions, the changes have to explain all but a tenth.
 # tests/compare/diagnosis/test_claims.py: test_a_map_of_a_column_that_is_hardly_needed_is_not_certain;
 # test_an_either_without_which_little_more_is_left_is_not_certain; test_a_change_explains_what_lies_between_the_versions
 NEEDED = 10.0
 
-# Times a residual: what is no more than this is about as good. So are two explanations; one without a cause, which then
-# is not needed; the last rows, predicted from the first; and a column that an explanation leaves worse than it was.
+# Ratio of two residuals up to which one is about as good as the other. It compares two explanations; an explanation
+# with and without a cause, which is not needed then; the last rows, predicted from the first, and fitted; and the
+# residual of a column with the file's own error there.
 # tests/compare/diagnosis/test_claims.py: test_a_map_of_a_column_that_is_hardly_needed_is_not_certain;
 # tests/compare/diagnosis/test_false_causes.py: test_no_cause_is_stated_that_spoils_a_right_column
 RIVAL = 3.0
@@ -39,7 +40,7 @@ ROWS_A_NUMBER = 4
 # tests/compare/diagnosis/test_claims.py: test_rivals_are_told_beside_each_other
 ALTERNATIVES = 3
 
-# Chance that a number which nobody typed has as few digits, within its own uncertainty.
+# Chance that an arbitrary number is as near to a round one, within its own uncertainty.
 # tests/compare/diagnosis/test_claims.py: test_few_digits
 CHANCE = 0.01
 
@@ -49,7 +50,7 @@ MOST_DIGITS = 7
 FACTOR_DIGITS = 4
 
 # Changes that a program may have, about: the number of accidents that may be mistaken for a cause. Divided by
-# the chance above, how many times as large a drift has to be without a cause for it to be no accident beside it.
+# the chance above, it is the factor by which a drift has to grow without a cause that is no accident beside it.
 # tests/compare/diagnosis/test_claims.py: test_few_digits_are_certain_and_many_are_one_of_several
 CATALOGUE = 80
 

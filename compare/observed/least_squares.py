@@ -32,23 +32,23 @@ def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbe
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=rcond)[0])
 
 
-def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers:
+def best_change(slopes: Numbers, residuals: Numbers, damping: float = 0.0) -> Numbers:
     """Return the change of the parameters that minimises the linearised residual.
 
     Args:
-        slopes: what the rows change by with each number, shape (rows, numbers); all are brought to
-            one size first.
-        left: the rows, less what the model has in their place, shape (rows,).
-        damping: holds back what the rows hardly tell: directions whose slope, of slopes made 1
-            each, is less than it.
+        slopes: derivatives of the rows by each number, shape (rows, numbers); all are scaled to
+            norm 1 first.
+        residuals: the rows less those of the model, shape (rows,).
+        damping: holds back what the rows hardly determine: directions whose scaled slope is less
+            than it.
     """
     scale = np.linalg.norm(slopes, axis=0)
     scale[scale == 0] = 1.0
     matrix = slopes / scale
     if damping:
         matrix = np.vstack([matrix, damping * np.eye(len(scale))])
-        left = np.concatenate([left, np.zeros(len(scale))])
-    change: Numbers = solved(matrix, left, 1e-14) / scale
+        residuals = np.concatenate([residuals, np.zeros(len(scale))])
+    change: Numbers = solved(matrix, residuals, 1e-14) / scale
     return change
 
 
@@ -57,7 +57,7 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
 
     Args:
         rows_of: returns the rows that numbers make; NaN where they make none.
-        rows: those that are to be met.
+        rows: those that are fitted.
         nudges: by which each number is moved for its slope.
     """
     moves = list(zip(np.diag(nudges), nudges, strict=True))
@@ -78,23 +78,23 @@ def gauss_newton(
 ) -> tuple[Numbers, float]:
     """Return the parameters that minimise the residual, and the norm of that residual.
 
-    Infinity where the first leave no numbers.
+    The norm is infinity if the first residual is not finite.
 
     Args:
-        model: returns what numbers leave, and a function that makes the slopes of `best_change`
-            there; further slopes are those of numbers that the model fits itself, because it is
-            linear in them.
-        start: first numbers.
+        model: returns the residuals of some parameters, and a function that makes the slopes of
+            `best_change` there; further slopes are those of numbers that the model fits itself,
+            because it is linear in them.
+        start: first parameters.
         steps: that are taken at most.
-        gain: share of what was left that a step has to come below, or it is not taken and the
-            search ends.
-        strays: whether another step may follow one that leaves plainly more, as one along a bent
-            valley does.
+        gain: share of the residual that a step has to come below, or it is not taken and the search
+            ends.
+        strays: whether another step may follow one with a plainly larger residual, as one along a
+            bent valley has.
     """
     best = start
     numbers = start
-    left, slopes = model(start)
-    least = float(np.linalg.norm(left))
+    residuals, slopes = model(start)
+    least = float(np.linalg.norm(residuals))
     strayed = False
     if not math.isfinite(least):
         return start, math.inf
@@ -102,11 +102,11 @@ def gauss_newton(
         jacobian = slopes()
         if not np.isfinite(jacobian).all():
             break
-        change = best_change(jacobian, left)
-        foreseen = float(np.linalg.norm(left - jacobian @ change))
+        change = best_change(jacobian, residuals)
+        foreseen = float(np.linalg.norm(residuals - jacobian @ change))
         numbers = numbers + change[: len(numbers)]
-        left, slopes = model(numbers)
-        size = float(np.linalg.norm(left))
+        residuals, slopes = model(numbers)
+        size = float(np.linalg.norm(residuals))
         if size < gain * least:
             best = numbers
             least = size

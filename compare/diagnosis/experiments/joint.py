@@ -181,16 +181,18 @@ class JointCase(FileCase):
             fit = run.fits[kind]
             share = math.sqrt(len(run.case.rows.times) / len(self.rows.times))
             weight = self.weight(run) * share
-            fits.append(replace(fit, rest=weight * fit.rest, slopes=weight * fit.slopes))
+            fits.append(
+                replace(fit, residual_rms_m=weight * fit.residual_rms_m, slopes=weight * fit.slopes)
+            )
         theta = np.concatenate([fit.theta for fit in fits])
-        rest = math.hypot(*(fit.rest for fit in fits))
+        residual_rms_m = math.hypot(*(fit.residual_rms_m for fit in fits))
         free = []
         for index, fit in enumerate(fits):
             first = index * len(fit.theta)
             free += [first + i for i in fit.free]
         # the triangular factor of the slopes is as good as they are, and shorter
         triangles = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
-        return FamilyFit(kind, theta, rest, tuple(free), _block_diagonal(triangles))
+        return FamilyFit(kind, theta, residual_rms_m, tuple(free), _block_diagonal(triangles))
 
     def causes(self, kind: str) -> list[Cause]:
         """Return the causes of a family, in every way in which the runs may distinguish them."""
@@ -280,7 +282,7 @@ class JointCase(FileCase):
         ]
         return Explanation(
             causes=tuple(causes),
-            corrected_m=largest(case.left(program)),
+            corrected_m=largest(case.residuals(program)),
             score=reading.score,
             allowed_m=case.allowed_m,
         )

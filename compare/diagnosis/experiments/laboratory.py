@@ -1,4 +1,4 @@
-"""Run a program again with other numbers in its placeholders, until one explanation of all its files is left."""
+"""Run a program again with other numbers in its placeholders, until one explanation of all its files remains."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reference import FoucaultError, Scene
 from ...candidates.candidate import Candidate, Deviation
 from ...candidates.external import SETTING
 from ..case import AS_IF, EITHER, UNCORRECTED, Explanation, largest
-from ..claims import hedged, loose
+from ..claims import hedged, unnamed_step_error
 from ..explain import RENAMED, KnownScene
 from ..fitted import readers_of
 from ..stepped import Steps, likely_steps
@@ -63,7 +63,7 @@ class Laboratory:
         self._runs = [self._trial(self._problem, candidate, 1.0)]
 
     def measured(self, possible: Sequence[Experiment]) -> tuple[Experiments, Explanation]:
-        """Make experiments until one explanation is left, and return what they found, and that explanation."""
+        """Make experiments until one explanation remains, and return what they found, and that explanation."""
         explanations: list[Explanation] = []
         with np.errstate(all="ignore"):
             for experiment in possible:
@@ -101,7 +101,7 @@ class Laboratory:
         return f"Cannot be told apart by these experiments: your program {', or '.join(texts)}."
 
     def _measured_explanation(self, explanations: Sequence[Explanation]) -> Explanation:
-        """Return the explanation that is left, in the conventions of the first file.
+        """Return the explanation that remains, in the conventions of the first file.
 
         Several explanations that remain name no cause together. If no explanation remains, the
         certain causes of the first file become what the program moves like.
@@ -185,7 +185,7 @@ class Laboratory:
         return error_m is not None
 
     def _trial(self, problem: KnownScene, candidate: Candidate, setting: float) -> Trial:
-        """Return a trial of x and y; what may be left of them is as large a part of the swing as of the first."""
+        """Return a trial of x and y; its largest residual may be as large a part of the swing as that of the first."""
         rows = problem.rows(candidate.t, candidate.columns, self._without)
         rows = replace(rows, positions=np.ascontiguousarray(rows.plane), cord=None)
         case = problem.case(rows, self._allowed_m)
@@ -221,7 +221,7 @@ def _has_fewer(explanations: Sequence[Explanation], explanation: Explanation) ->
 def _of_loose_integrator(trial: Trial, size_m: float) -> Explanation:
     """Return the explanation that an integrator's error moves the bob by a size in m: nothing of it is put right."""
     case = trial.case
-    return case.explanation((loose(size_m),), case.rows.positions - case.truth, 0)
+    return case.explanation((unnamed_step_error(size_m),), case.rows.positions - case.truth, 0)
 
 
 def _drifts(trial: Trial) -> bool:
@@ -249,4 +249,4 @@ def _error_m(trial: Trial) -> float:
 
 def _conventions(trial: Trial) -> list[str]:
     ids = [convention.id for convention in trial.case.rows.conventions]
-    return [word for word in ids if word not in UNCORRECTED]
+    return [convention_id for convention_id in ids if convention_id not in UNCORRECTED]

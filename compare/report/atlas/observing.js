@@ -1,5 +1,5 @@
 // The observation: how a right motion became the columns of a file, as compare/diagnosis/observed.py. Maps are fitted to the
-// truth; one that leaves more than is allowed is not named. Needs judging.js, and claims.js, which emitted_claims.py writes.
+// truth; one whose residual is larger than is allowed is not named. Needs judging.js, and claims.js, which emitted_claims.py writes.
 "use strict";
 
 const MAPPED = 4000; // rows at most
@@ -30,7 +30,7 @@ function shortestDecimal(value, doubt) {
   return { value: Number(value.toPrecision(12)), digits: 12 };
 }
 
-// Whether somebody may have typed a number: its shortest decimal within a doubt is no accident.
+// Whether a number is round: it has as few digits as a person types, and its shortest decimal within a doubt is no accident.
 function hasFewDigits(value, uncertainty) {
   const doubt = Math.max(uncertainty, 2 ** -50 * Math.abs(value));
   if (Math.abs(value) <= doubt) return true;
@@ -39,7 +39,7 @@ function hasFewDigits(value, uncertainty) {
   return digits <= MOST_DIGITS && 2 * doubt < CHANCE * unit;
 }
 
-// A fitted number: its text, and its price, which is 0 if somebody may have typed it.
+// A fitted number: its text, and its price, which is 0 if it is round, and 1 if it is arbitrary.
 function fittedNumber(value, uncertainty) {
   const text = shortNumber(shortestDecimal(value, uncertainty).value, MAP_DIGITS);
   return { text, price: hasFewDigits(value, uncertainty) ? 0 : 1 };
