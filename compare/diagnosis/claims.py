@@ -35,12 +35,12 @@ from .hypotheses import (
 from .readings import CauseReading
 from .thresholds import ALTERNATIVES, CATALOGUE, CHANCE, NEEDED, RIVAL
 
-# beside which no clock is believed
+# numbers that change the phase or the amplitude as the drift of a step error does
 _ONE_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag")
 # a g that is the effective one, with the centrifugal force's change along the swing and without it
 _EFFECTIVE_G = "effective_gravity"
 _WITHOUT_CHANGE = "no_centrifugal"
-# of a linear motion their quotient alone is known
+# a linear motion shows only their quotient
 _ONE_NUMBER = ("site.gravity", "pendulum.length")
 # numbers of which a motion may show one combination alone: each may be wrong, or both
 _COMBINED = (frozenset(_ONE_NUMBER), frozenset(("site.latitude", "site.rotation_rate")))
@@ -59,7 +59,7 @@ class Alternative:
     text: str
 
 
-_A_STEP = Alternative("integrator_loose", LOOSE)
+_UNNAMED_STEP = Alternative("integrator_loose", LOOSE)
 
 
 def graded(claim: Claim, part: Deviation, without_m: float) -> Deviation | None:
@@ -99,7 +99,7 @@ def hedged(part: Deviation) -> Deviation:
 
 def unnamed_step_error(size_m: float, stage: str = "integrator") -> Deviation:
     """Return the cause that an integrator has an error whose method is not known."""
-    cause = Deviation(_A_STEP.ids, _A_STEP.text, size_m, "integrator")
+    cause = Deviation(_UNNAMED_STEP.ids, _UNNAMED_STEP.text, size_m, "integrator")
     return hedged(cause) if stage == AS_IF else cause
 
 
@@ -123,23 +123,25 @@ def explanation_of(
     if not hypotheses:
         return no_explanation(case), None
 
-    likeliest = without_needless(simplest(hypotheses))
-    best, hypotheses = _with_drifts(case, readings, hypotheses, likeliest)
-
-    reported, growths = worth_saying(best)
-    if not reported.leaves_little or not reported.is_harmless:
-        return no_explanation(case), likeliest
-    comparison = _AmongRivals(best, rivals_of(best, hypotheses), reported, growths)
-    return _explanation_by(comparison), likeliest
+    likeliest = _best_of(hypotheses)
+    best, hypotheses = _beside_a_drift(case, readings, hypotheses, likeliest)
+    return _compared_with_rivals(best, hypotheses), likeliest
 
 
-def _with_drifts(
+def _best_of(hypotheses: Sequence[Hypothesis]) -> Hypothesis:
+    """Return the simplest hypothesis that is good enough, without causes that it does not need."""
+    return without_needless(simplest(hypotheses))
+
+
+def _beside_a_drift(
     case: FileCase,
     readings: Sequence[CauseReading],
     hypotheses: list[Hypothesis],
     likeliest: Hypothesis,
 ) -> tuple[Hypothesis, list[Hypothesis]]:
-    """Return the best hypothesis, a step error of unknown method included, and all hypotheses.
+    """Return the best hypothesis, with or without a step error of unknown method, and all that were tried.
+
+    A step error is tried if the likeliest hypothesis without one has arbitrary numbers, or does not explain the rows.
 
     Args:
         case: the file.
@@ -152,20 +154,25 @@ def _with_drifts(
         hypotheses = hypotheses + _harmless(case, drifting(case, readings))
         undisguised = [one for one in hypotheses if not one.is_drift_in_disguise]
         hypotheses = undisguised or hypotheses
-        best = without_needless(simplest(hypotheses))
+        best = _best_of(hypotheses)
 
     if best.drifts:
         hypotheses = hypotheses + _harmless(case, list(instead_of_drift(case, best.reading)))
-        best = without_needless(simplest(hypotheses))
+        best = _best_of(hypotheses)
     return best, hypotheses
 
 
-def _explanation_by(comparison: _AmongRivals) -> Explanation:
-    """Return the explanation by a hypothesis that was compared with its rivals."""
-    reported = comparison.reported
+def _compared_with_rivals(best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Explanation:
+    """Return the explanation by the best hypothesis: what it shares with its rivals, and how they differ."""
+    case = best.case
+    reported, growths = worth_saying(best)
+    if not reported.leaves_little or not reported.is_harmless:
+        return no_explanation(case)
+
+    comparison = _AmongRivals(best, rivals_of(best, hypotheses), reported, growths)
     causes = tuple(comparison.causes())
-    explanation = reported.case.explanation(causes, reported.residuals, reported.price)
-    model = _model(reported.case, reported, causes)
+    explanation = case.explanation(causes, reported.residuals, reported.price)
+    model = _model(case, reported, causes)
     return replace(explanation, model=model, reading=reported.reading)
 
 
@@ -194,7 +201,7 @@ class _AmongRivals:
         best: the hypothesis.
         rivals: of it.
         reported: the same without what is within the tolerance.
-        growths: the factor by which the residual grows without each of its causes, by id.
+        growths: the factor by which its residual grows without each of its causes, by id.
     """
 
     best: Hypothesis
@@ -223,10 +230,13 @@ class _AmongRivals:
         A step error of unknown method has two such numbers: beside it an alternative with a fitted number of its own
         is not certain.
         """
-        own = {cause.id for cause in differing}
-        beside = {cause.id for cause in self.best.arbitrary_inputs} - own
-        has_number = any(hypothesis.arbitrary_inputs for hypothesis in self._ids_by_hypothesis)
-        return bool(beside) or (self.best.drifts and has_number)
+        differing_ids = {cause.id for cause in differing}
+        arbitrary_ids = {cause.id for cause in self.best.arbitrary_inputs}
+        if not arbitrary_ids <= differing_ids:
+            return True
+        hypotheses = (self.best, *self.rivals)
+        has_number = any(hypothesis.arbitrary_inputs for hypothesis in hypotheses)
+        return self.best.drifts and has_number
 
     def _sized(self) -> Iterator[Deviation]:
         """Yield the causes that are reported, each with the distance by which it moves the bob."""
@@ -321,7 +331,8 @@ class _AmongRivals:
     @cached_property
     def _may_be_a_step(self) -> bool:
         """Whether a step error of unknown method has the same effect as the arbitrary numbers."""
-        arbitrary = [cause for one in self._ids_by_hypothesis for cause in one.arbitrary]
+        hypotheses = (self.best, *self.rivals)
+        arbitrary = [cause for one in hypotheses for cause in one.arbitrary]
         if not any(cause.id in _ONE_DRIFT for cause in arbitrary):
             return False
         own_ids = self._ids_by_hypothesis[self.best] - self._shared_ids
@@ -344,7 +355,7 @@ class _AmongRivals:
         if not self.best.is_exact:
             alternatives = list(map(_without_name, alternatives))
         if self._may_be_a_step:
-            alternatives.append(_A_STEP)
+            alternatives.append(_UNNAMED_STEP)
         return alternatives
 
 
@@ -360,7 +371,7 @@ def _alternative(hypothesis: Hypothesis, cause_ids: frozenset[str]) -> Alternati
 def _without_name(alternative: Alternative) -> Alternative:
     """Return an alternative; a step alone as a step error of unknown method."""
     alone = alternative.ids.startswith("integrator") and "+" not in alternative.ids
-    return _A_STEP if alone else alternative
+    return _UNNAMED_STEP if alone else alternative
 
 
 def _without_longer_forms(alternatives: Sequence[Alternative]) -> list[Alternative]:

@@ -59,9 +59,9 @@ are left out: what counts is which mistakes are made.
 - **model**: *sphere* is the full pendulum, *small swings* the linear one, in which a wide swing is no slower.
 - **digits**: of the position, −log₁₀ of the largest error over the amplitude; 0 is no digit at all.
 - **named**: the words of [the oracle](oracle.md#all-causes). "As if" stands before an input
-  that the motion is like, and that nobody typed. Not in its table: `half_a_step`, of a leapfrog
+  that the motion is like, with a number that is not round. Not in its table: `half_a_step`, of a leapfrog
   from two equal rows, and `y_is_vertical` and `falls`, which are told in a sentence.
-- **then**: digits that are left with all of these put right, up to {most}. Where it is hardly
+- **then**: digits that are right once all of these are corrected, up to {most}. Where it is hardly
   more than before, something is not named.
 - **not named**: what reading the program shows besides.
 

@@ -174,7 +174,7 @@ def test_an_either_without_which_little_more_is_left_is_not_certain() -> None:
     assert [cause.stage for cause in found.explanation.causes] == ["as_if"]
 
 
-def test_beside_a_number_that_nobody_typed_no_either_is_certain() -> None:
+def test_beside_an_arbitrary_number_no_either_is_certain() -> None:
     """Velocity Verlet with both accelerations of the old velocity: a push at the release makes up for most of it."""
     step, square, coriolis = 0.27 / 21, 9.81 / 20, 0.01 * math.sqrt(3)
     place, velocity = 0.2 + 0j, 0j
@@ -198,7 +198,7 @@ def test_beside_a_number_that_nobody_typed_no_either_is_certain() -> None:
     assert not any("site.latitude" in word for word in stages(found))
 
 
-def test_beside_a_number_that_nobody_typed_a_factor_is_not_certain() -> None:
+def test_beside_an_arbitrary_number_a_factor_is_not_certain() -> None:
     """Semi-implicit Euler whose velocity loses a part of 10,000 each step, and so the push of the Coriolis force."""
     step, square, coriolis = 0.86 / 73, 9.8 / 67, 0.02 * math.sin(math.pi / 4)
     place, velocity = 0.335 + 0.268j, 0j

@@ -259,7 +259,7 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         (70007, 263),  # a linear model beside the same without its gravity
         # vertical alone, Ω of the other hemisphere is Ω of the other sign
         pytest.param(61126, 264, marks=LONG),
-        # a clock and drag, which a step and three numbers that nobody types make as well
+        # a clock and drag, which a step and three arbitrary numbers make as well
         (70007, 154),
         # no rotation, which is neither of its forces as well; the next test has the two readings alone
         pytest.param(85005, 148, marks=LONG),
@@ -270,7 +270,7 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         pytest.param(84004, 152, marks=LONG),
         # beside a step error of no name, another g looks like a height of the site or a rotation rate
         (71203, 131),
-        # minutes read as seconds: an Earth that turns 60 times too fast, and a g that nobody types
+        # minutes read as seconds: an Earth that turns 60 times too fast, and an arbitrary g
         (16993, 177),
     ],
 )
@@ -474,7 +474,7 @@ def test_a_bob_that_nothing_holds_falls(pull: float) -> None:
         ({"site.gravity": "9.80669"}, {"site.gravity"}, set()),
         ({"pendulum.drag": "1e-6"}, {"pendulum.drag"}, set()),
         ({"site.gravity": "9.80669", "pendulum.drag": "1e-6"}, {"site.gravity", "pendulum.drag"}, set()),
-        # numbers that nobody types are what a step does as well
+        # a step has the same effect as arbitrary numbers
         ({"site.gravity": "9.806691234567"}, set(), {"site.gravity", "pendulum.length", "integrator_loose"}),
         (
             {"site.gravity": "9.806691234567", "pendulum.drag": "1.0123456e-6", "site.latitude": "48.5"},
