@@ -1,13 +1,13 @@
-"""The advice on each cause and each habit of a file, by its word.
+"""The advice on each cause and each habit of a file, by its id.
 
-A word that ends in _ stands for several.
+An id that ends in _ stands for several.
 """
 
 from __future__ import annotations
 
 import re
 
-FAMILIES = ("gravity_", "integrator_", "frame_")  # of whose words one line speaks
+FAMILIES = ("gravity_", "integrator_", "frame_")  # causes whose ids begin so share their advice
 # the centrifugal force at the suspension is Ω² q, away from the axis
 _AXIS = "q is the suspension's distance from the Earth's axis (`foucault show` prints it)"
 DO = {
@@ -75,7 +75,7 @@ DO = {
     "linear_g": "Integrate the full equations: a small-angle model leaves out that a wide swing is slower.",
     "linear_in_angle": "Integrate the full equations: this model leaves out that a wide swing is slower.",
 }
-HABITS = {  # of a file: words, what is said of it, what to do
+HABITS = {  # of a file: ids, what is said of it, what to do
     "decimals, digits": ("prints few digits", "Print 17 digits."),
     "single_precision": ("holds numbers in single precision", "Compute and write in double."),
     "z_down": ("counts z downwards", "Nothing: it is converted."),
@@ -126,11 +126,11 @@ HABITS = {  # of a file: words, what is said of it, what to do
 }
 
 
-def advice_on(word: str) -> str:
+def advice_on(cause_id: str) -> str:
     """Return what to do about a cause, or about a habit of a file; "" where there is nothing to do."""
-    family = next((family for family in FAMILIES if word.startswith(family)), word)
-    habits = {one: what for words, (_, what) in HABITS.items() for one in words.split(", ")}
-    text = DO.get(word) or DO.get(family) or habits.get(word, "")
+    family = next((family for family in FAMILIES if cause_id.startswith(family)), cause_id)
+    habits = {one: what for ids, (_, what) in HABITS.items() for one in ids.split(", ")}
+    text = DO.get(cause_id) or DO.get(family) or habits.get(cause_id, "")
     text = "" if text.startswith("Nothing") else text
     # on a terminal a link is the file that it leads to
     return re.sub(r"\[\w+\]\((\S+?)\)", r"docs/\1", text)

@@ -299,6 +299,7 @@ class Hypothesis(Claim):
             return False
         if self.residual_rms_m > RIVAL * other.residual_rms_m:
             return False
+        # a, b: the residual with these causes, and with others.
         # CATALOGUE causes, each as good by accident with probability about a/b: together less likely than CHANCE
         return CATALOGUE * self.undrifted.residual_rms_m < CHANCE * other.undrifted.residual_rms_m
 
@@ -327,6 +328,7 @@ class Hypothesis(Claim):
             return False
         without_each = [self.without(cause_id) for cause_id in self.cause_ids]
         least = min((hypothesis.residual_rms_m for hypothesis in without_each), default=0.0)
+        # a, b: the residual with these causes, and with others.
         # CATALOGUE causes, each as good by accident with probability about a/b: together less likely than CHANCE
         return CATALOGUE * self.residual_rms_m < CHANCE * least
 
