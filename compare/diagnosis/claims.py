@@ -109,7 +109,7 @@ def no_explanation(case: FileCase) -> Explanation:
 
 
 def explanation_of(
-    case: FileCase, readings: Sequence[CauseReading]
+    case: FileCase, readings: Sequence[CauseReading], stepped: bool = False
 ) -> tuple[Explanation, Hypothesis | None]:
     """Return what may be said of a file, and the best hypothesis without a step error of unknown method.
 
@@ -118,13 +118,16 @@ def explanation_of(
     Args:
         case: the file.
         readings: combinations of causes whose programs were run.
+        stepped: whether what steps do was taken from its rows: then there is no other step error.
     """
     hypotheses = _harmless(case, readings)
     if not hypotheses:
         return no_explanation(case), None
 
     likeliest = _best_of(hypotheses)
-    best, hypotheses = _beside_a_drift(case, readings, hypotheses, likeliest)
+    best = likeliest
+    if not stepped:
+        best, hypotheses = _beside_a_drift(case, readings, hypotheses, likeliest)
     return _compared_with_rivals(best, hypotheses), likeliest
 
 

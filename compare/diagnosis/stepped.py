@@ -254,7 +254,7 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
             break
         exact_case = motion.taken_from(case)
         readings = readings_of(exact_case, stepped=True)
-        _, best = explanation_of(exact_case, readings)
+        _, best = explanation_of(exact_case, readings, stepped=True)
         if best is None or best.reading.program.kind != steps.kind:
             return None
         pendulum, theta = case.pendulum_of(best.reading.program)
@@ -269,7 +269,7 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     if steps.kind == "linear" and not rms(residuals) <= most * case.resolution:
         return None
     readings = [replace(best.reading, residual_rms_m=rms(residuals)), *readings]
-    explanation, _ = explanation_of(motion.taken_from(case), readings)
+    explanation, _ = explanation_of(motion.taken_from(case), readings, stepped=True)
     without_steps = polished(case, best.reading)
     step = graded(
         Claim(case, residuals),

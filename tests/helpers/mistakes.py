@@ -92,6 +92,9 @@ class Case:
     def wrong(self, words: set[str]) -> set[str]:
         """Return the words that are said and are not true, programs with the same motion being one."""
         true = self.true | one_word_for_one_motion(self.true)
+        # the same of one column
+        if {"x_west", "y_south"} & true:
+            true.add("column_mirrored")
         # Ω is vertical
         if {"vertical_only", "hemisphere"} <= true and self.arguments["reading"] == 2:
             true.add("coriolis_sign")
