@@ -42,8 +42,8 @@ TIMEOUT_S = 600.0  # default of --timeout
 REPEATS = 3  # default of --repeats
 
 _FIELDS_WITHOUT_EFFECT = {
-    "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
-    "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
+    "run.level": "A candidate is compared with a confirmed solution, or a dataset that ships.",
+    "inputs=decimal": "Write --inputs decimal: without it doubles are compared with doubles.",
 }
 
 

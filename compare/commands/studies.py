@@ -48,15 +48,15 @@ PARIS = "paris"  # the scene with whose values a command is tried for its placeh
 # fields of a scene that make no difference to a study of methods, of precisions, of approximations;
 # and why
 OF_METHODS = {
-    "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
-    "inputs=decimal": "Methods are given doubles, and are held against the solution for doubles.",
+    "run.level": "Methods are compared with a confirmed solution, or a dataset that ships.",
+    "inputs=decimal": "Methods are given doubles, and compared with the solution for doubles.",
 }
 OF_PRECISIONS = OF_METHODS | {
     "run.digits": "The truth has as many digits as the finest precision needs."
 }
 OF_APPROXIMATIONS = dict.fromkeys(
     ("run.level", "run.digits", "run.transits", "run.grid_step"),
-    "Approximations are held against one run, at set times.",
+    "Approximations are compared with one run, at set times.",
 )
 
 PRECISIONS = option(

@@ -31,9 +31,8 @@ _NO_RISE = 1e-3  # of the bob's: heights that differ by less are constant
 _ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
 ROUGHLY = 0.03  # of the distance from the vertical: how far a release in another unit may be off
 _SINGLE = 1e-6  # of the span: rounding of times in single precision
-_ROUGH_FIT = (
-    1e-2  # of the release's distance: largest residual of phasors that show when a clock began
-)
+# of the release's distance: largest residual of phasors that show when a clock began
+_ROUGH_FIT = 1e-2
 _SHIFTS = 3  # rows by which a clock may be off
 _SHORTEST = 12  # rows that show a frequency
 _FIRST = 400  # rows that are used for it

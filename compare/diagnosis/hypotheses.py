@@ -313,7 +313,7 @@ class Hypothesis(Claim):
     def is_worth_saying(self, cause_id: str) -> bool:
         """Return whether the residual without a cause exceeds the tolerance, or a drift would take its place.
 
-        If all numbers are round, none is fitted again.
+        The other numbers are fitted again only if one is arbitrary, or beside a step error of unknown method.
         """
         fitted_again = bool(self.arbitrary) or self.drifts
         without = self.without(cause_id) if fitted_again else self.left_out(cause_id)

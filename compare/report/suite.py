@@ -147,7 +147,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     if reasons:
         parts.append(section("What was found", *reasons))
     lead = paragraph(
-        f"{message(outcomes)}: candidates held against the reference solutions of their scenes. Digits are those of "
+        f"{message(outcomes)}: candidates compared with the reference solutions of their scenes. Digits are those of "
         "the largest error, relative to the amplitude."
     )
     return page("Foucault pendulum: a suite of scenes", parts, lead=lead)

@@ -32,7 +32,7 @@ function pathRows({ path, tolerance_m: allowed, bound_m: bound, amplitude_m: amp
   const rows = [
     ["judged", `${path.rows.toLocaleString("en")} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${end} s`],
     ["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`],
-    ["held against", reference],
+    ["compared with", reference],
     ["error at the end", `${small(path.end_error_m)} m`],
     ["rms error", `${small(path.rms_error_m)} m`],
     ["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(amplitude)} m`],

@@ -124,7 +124,7 @@ def test_fields_have_the_short_names_of_run_and_one_without_effect_is_a_note(fou
     )
     assert ignored[:2] == long[:2]
     assert ignored[2] == "--set level=enclosed has no effect here. " + (
-        "A candidate is held against a confirmed solution, or a dataset that ships.\n"
+        "A candidate is compared with a confirmed solution, or a dataset that ships.\n"
     )
     assert load_scene("paris", ["x0=0.2", "length=60"]) == load_scene(
         "paris", ["release.x=0.2", "pendulum.length=60"]
