@@ -120,16 +120,17 @@ class Header:
         """Refuse a comment that names columns, but not as many as there are, or in another order or unit than taken."""
         for line in self.lines:
             for way in words(line.text):
-                meanings = [meant for word in way if (meant := meaning(word, {})) is not None]
+                names = without_label(way)
+                meanings = [meant for word in names if (meant := meaning(word, {})) is not None]
                 named = [meant.column for meant in meanings]
-                if not set(self.needed) <= set(named) or 2 * len(named) < len(way):
+                if not set(self.needed) <= set(named) or 2 * len(named) < len(names):
                     continue
                 is_separated = any(
                     mark and mark in line.text and without_end(split(line.text, mark)) == way
                     for mark in SEPARATORS
                 )
                 # as "columns: t x y …", with further columns behind
-                is_labelled = way[0].endswith(":") and len(way) == count + 1
+                is_labelled = len(names) < len(way) and len(names) == count
                 has_all = len(named) == len(columns) or is_labelled
                 taken = meanings[: len(columns)]
                 is_same = (
@@ -138,7 +139,7 @@ class Header:
                     and all(meant.factor == 1 for meant in taken)
                 )
                 if is_separated or not is_same:
-                    raise self._unequal(number, count, line, len(way), "")
+                    raise self._unequal(number, count, line, len(names), "")
 
     def _header(self, least: int, most: int) -> tuple[int, list[str]] | None:
         """Return the place and the words of the last line that names the columns, or is meant to.

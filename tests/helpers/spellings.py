@@ -249,6 +249,9 @@ def of_my_own() -> dict[str, Spelling]:
         ),
         "semicolons",
     )
+    found["label and words of a logger"] = refused(
+        table("# Latest: Time (s) Y (m) Run #1 Position, X (m)", HALVES, " "), "3 fields"
+    )
     found["label and thousands"] = refused("Latest: t x y\n43 200 0 1\n43 201 1 0\n", "fields")
     found["thousands in quotes"] = refused('t,x,y\n"0",0.3,0.4\n"1,234",0.2,0.1\n', "1,234")
     found["comma before three digits"] = refused("t;x;y\n1;1,250;2,500\n2;1,125;2,375\n", "1,250")

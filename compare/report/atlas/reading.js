@@ -332,12 +332,13 @@ function refuseOtherComment(lines, names, count, needed, vocabulary) {
     const marks = vocabulary.SEPARATORS.filter((mark) => mark && line.text.includes(mark));
     const separated = new Set(marks.map((mark) => withoutEnd(split(line.text, mark, vocabulary)).join("\n")));
     for (const way of wordsOf(line.text, vocabulary)) {
-      const meanings = way.map((word) => meaning(word, vocabulary)).filter(Boolean);
+      const words = withoutLabel(way);
+      const meanings = words.map((word) => meaning(word, vocabulary)).filter(Boolean);
       const named = meanings.map(({ column }) => column);
-      if (!needed.every((name) => named.includes(name)) || 2 * named.length < way.length) continue;
+      if (!needed.every((name) => named.includes(name)) || 2 * named.length < words.length) continue;
       const same = named.join() === names.join() && meanings.every(({ factor }) => factor && factor[0] === factor[1]);
       if (same && !separated.has(way.join("\n"))) continue;
-      throw new Unreadable(`The first row has ${count} fields, and the header in line ${line.number} has ${way.length}.`);
+      throw new Unreadable(`The first row has ${count} fields, and the header in line ${line.number} has ${words.length}.`);
     }
   }
 }
