@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -130,7 +131,7 @@ def _show(options: _ShowOptions) -> None:
         typer.echo("")
         echo(part.lines)
     typer.echo("")
-    echo(paragraph(_NEXT.format(options.scene_word)))
+    echo(paragraph(_NEXT.format(_scene_words(options))))
 
 
 command = as_command(_ShowOptions, _show)
@@ -142,6 +143,14 @@ class _Part(NamedTuple):
     document: dict[str, Any]
     title: str
     lines: Iterable[str]
+
+
+def _scene_words(options: _ShowOptions) -> str:
+    """Return the words of the command line that name the scene, with what was replaced in it."""
+    words = [str(options.scene_word)]
+    for assignment in options.set_ or ():
+        words += ["--set", assignment]
+    return shlex.join(words)
 
 
 def _scene(options: _ShowOptions) -> Scene | None:

@@ -14,6 +14,7 @@ _BEGIN = """\
 # Numbers stand in quotes, so that they are taken exactly as written. A field that you leave out has its default.
 """
 _COLUMN = 34  # where comments begin
+_WIDTH = 120  # of a line; a longer comment has a line for each of its parts
 _TEMPLATE = {
     "id": "mine",
     "title": "my pendulum",
@@ -62,7 +63,19 @@ def _lines(table: SceneTable) -> Iterator[str]:
             assignment = f"{name} = {_toml(value)}"
         extra: Any = info.json_schema_extra or {}
         unit = f"{extra['unit']}; " if extra else ""
-        yield f"{assignment:{_COLUMN}}  # {unit}{info.description}"
+        yield from _commented(assignment, unit, str(info.description))
+
+
+def _commented(assignment: str, unit: str, meaning: str) -> Iterator[str]:
+    """Yield an assignment and its comment on one line; a long meaning goes on below, a part on each line."""
+    line = f"{assignment:{_COLUMN}}  # {unit}{meaning}"
+    if len(line) <= _WIDTH:
+        yield line
+        return
+    first, *others = meaning.split("; ")
+    yield f"{assignment:{_COLUMN}}  # {unit}{first}"
+    for part in others:
+        yield f"{'':{_COLUMN}}  # {part}"
 
 
 def _toml(value: Any) -> str:

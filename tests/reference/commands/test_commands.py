@@ -165,6 +165,8 @@ def test_show_of_a_folder_says_what_reads_it(foucault, tmp_path, monkeypatch):
 def test_show_begins_a_scene(foucault):
     status, out, _ = foucault("show", "laboratory", "--template")
     assert status == 0 and 'drag = "0.0023"' in out
+    meanings = [line for line in out.splitlines() if "centrifugal force" in line]
+    assert len(meanings) == 2, "a line for each of the two"
     for words, field in (
         ((), "SCENE"),
         (("--template", "--json"), "--json"),
@@ -172,6 +174,14 @@ def test_show_begins_a_scene(foucault):
     ):
         status, _, err = foucault("show", *words)
         assert (status, err.startswith(f"foucault: {field}: ")) == (2, True), err
+
+
+def test_show_ends_with_commands_for_the_same_scene(foucault):
+    changes = ("--set", "pendulum.length=20", "--set", "title=my hall")
+    out = unwrapped(foucault("show", "paris", *changes)[1])
+    words = "paris --set pendulum.length=20 --set 'title=my hall'"
+    assert f"`foucault generate {words}` solves it" in out
+    assert f"`foucault score {words} FILE` judges a program by it" in out
 
 
 def test_a_motion_whose_first_step_is_too_short_for_doubles_has_no_period(foucault):
