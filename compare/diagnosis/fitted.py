@@ -86,9 +86,16 @@ def same_motions(
     seen = {_cause_ids(reading)}
     waiting = [reading]
     while waiting:
-        for other in _with_one_exchange(case, waiting.pop(), catalogue):
-            if _cause_ids(other) not in seen:
-                seen.add(_cause_ids(other))
+        known = waiting.pop()
+        cause_ids = _cause_ids(known)
+        for before, after in SAME_MOTIONS:
+            exchanged_ids = (cause_ids - before) | after
+            if not before <= cause_ids or exchanged_ids in seen:
+                continue
+            other = _exchanged(known, before, after, catalogue)
+            if other is not None:
+                seen.add(exchanged_ids)
+                other = polished(case, other)
                 waiting.append(other)
                 yield other
 
@@ -98,22 +105,22 @@ def _cause_ids(reading: CauseReading) -> frozenset[str]:
     return frozenset(cause.id for cause in reading.causes)
 
 
-def _with_one_exchange(
-    case: FileCase, reading: CauseReading, catalogue: Sequence[Cause]
-) -> Iterator[CauseReading]:
-    """Yield readings with the other side of one of `SAME_MOTIONS` in place of its one side."""
-    cause_ids = _cause_ids(reading)
-    for before, after in SAME_MOTIONS:
-        if not before <= cause_ids:
-            continue
-        dropped = [cause for cause in reading.causes if cause.id in before]
-        missing = after - cause_ids
-        other: CauseReading | None = reading.reader.without(reading, dropped)
-        for cause in catalogue:
-            if other is not None and cause.id in missing:
-                other = reading.reader.with_cause(other, cause)
-        if other is not None and after <= {cause.id for cause in other.causes}:
-            yield polished(case, other)
+def _exchanged(
+    reading: CauseReading,
+    before: frozenset[str],
+    after: frozenset[str],
+    catalogue: Sequence[Cause],
+) -> CauseReading | None:
+    """Return a reading with causes of some ids in place of others; None if no program can have them."""
+    dropped = [cause for cause in reading.causes if cause.id in before]
+    missing = after - _cause_ids(reading)
+    other: CauseReading | None = reading.reader.without(reading, dropped)
+    for cause in catalogue:
+        if other is not None and cause.id in missing:
+            other = reading.reader.with_cause(other, cause)
+    if other is None or not after <= _cause_ids(other):
+        return None
+    return other
 
 
 def _price(reading: CauseReading) -> float:
