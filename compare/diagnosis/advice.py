@@ -89,13 +89,17 @@ HABITS = {  # of a file: ids, what is said of it, what to do
         "gives z a constant: its bob does not rise as it swings",
         "Write the height, or leave the column out.",
     ),
+    "z_wrong": (
+        "prints a z that is not the height of a bob at its x and y",
+        "Print the height of the bob: z = −√(l² − x² − y²), in metres from the suspension.",
+    ),
     "off_the_sphere": (
-        "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere",
-        "Put the bob back on the sphere after each step.",
+        "does not keep |r| = l: one of its columns is wrong, its cord is a spring, or its integrator leaves the sphere",
+        "Check each column. If all are right, put the bob back on the sphere after each step.",
     ),
     "unit_of_length": (
         "is in another unit than metres or than its header says, or in cord lengths",
-        "Name the unit in the header, or say `--units`.",
+        "Name the unit in the header, or say `--units`; multiply cord lengths by the length.",
     ),
     "unit_of_time": (
         "counts time in another unit than seconds",

@@ -22,7 +22,9 @@ EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
 # conventions that a model may go with
 HARMLESS = ("z_constant", "decimals", "digits", "single_precision")
-UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
+WITHOUT_HEIGHTS = ("off_the_sphere", "z_wrong")  # conventions whose heights are left out
+UNCORRECTED = (*HARMLESS, *WITHOUT_HEIGHTS)  # conventions of which nothing is put right
+ROUNDING = ("decimals", "digits", "single_precision")
 # stage of a cause that is not certain: the motion is like that
 AS_IF = "as_if"
 EITHER = "either"  # stage of several causes of which one is true: the file does not tell which
@@ -38,6 +40,7 @@ class FileRows:
         times: increasing, in s, shape (rows,).
         positions: x, y and perhaps z in m, shape (rows, 2 or 3).
         noise: rounding of the numbers, in m.
+        plane_noise: that of x and y alone, which may be less.
         conventions: what was changed.
         starts: whether row 0 is the release.
         cord: mean distance from the suspension in m, where the rows do not keep it; else None.
@@ -46,6 +49,7 @@ class FileRows:
     times: Array
     positions: Array
     noise: float
+    plane_noise: float
     conventions: tuple[Deviation, ...] = ()
     starts: bool = True
     cord: float | None = None
@@ -54,13 +58,6 @@ class FileRows:
     def plane(self) -> Array:
         """x and y in m, shape (rows, 2)."""
         return self.positions[:, :2]
-
-    @property
-    def relative(self) -> bool:
-        """Whether smaller numbers are rounded by less: single precision, or a number of digits."""
-        return any(
-            convention.id in ("single_precision", "digits") for convention in self.conventions
-        )
 
     def changed(self, convention: Deviation, **fields: object) -> FileRows:
         """Return the rows with some fields replaced, and what is to be said of that."""
@@ -161,30 +158,35 @@ class Explanation:
         if self.slip:
             yield self.slip
         yield from self._remaining_error()
-        if self.next_step and not self.known:
+        if self.next_step and not self.known and (self.causes or not self.explains):
             yield f"Next: {self.next_step}"
 
     def _remaining_error(self) -> Iterator[str]:
         """Yield the error once all is corrected, or that nothing is known."""
-        # which the rounding of a file, say, may be by itself
-        enough = self.corrected_m <= self.allowed_m
-        corrected = [part for part in self.conventions if enough or part.id not in UNCORRECTED]
-        mended = self.causes or corrected
-        if not (mended and math.isfinite(self.corrected_m)):
-            if not self.slip:
-                yield "No mistake known to foucault explains the error."
-            return
-        these = "this" if len(self.causes or self.conventions) == 1 else "all this"
+        corrected = [part for part in self.conventions if part.id not in UNCORRECTED]
+        convention_ids = {part.id for part in self.conventions}
+        without_z = not convention_ids.isdisjoint(WITHOUT_HEIGHTS)
         # a smaller error is rounding, and not the same on every processor
         rounding_m = self.allowed_m / 1000
         remaining = f"below {rounding_m:.1g} m"
         if self.corrected_m > rounding_m:
             remaining = f"{self.corrected_m:.2g} m"
+
+        if not math.isfinite(self.corrected_m) or not (self.causes or corrected):
+            if self.explains and without_z:
+                yield f"Without its z, the error is {remaining}."
+            elif self.explains and not convention_ids.isdisjoint(ROUNDING):
+                yield "The rounding of its numbers explains the error."
+            elif not self.slip:
+                yield "No mistake known to foucault explains the error."
+            return
+        these = "this" if len([*self.causes, *corrected]) == 1 else "all this"
+        left_out = ", and without its z" if without_z else ""
         tolerances = self.corrected_m / self.allowed_m
         beyond = ""
-        if tolerances > 1:
+        if tolerances > 1 and not self.explains:
             beyond = f", {tolerances:.2g} tolerances: no known mistake explains it"
-        yield f"With {these} corrected, the error is {remaining}{beyond}."
+        yield f"With {these} corrected{left_out}, the error is {remaining}{beyond}."
 
 
 def _advised(part: Deviation) -> Iterator[str]:
@@ -227,6 +229,17 @@ class FileCase:
         return max(self.rows.noise, self.allowed_m / RIVAL)
 
     @property
+    def needs_cause(self) -> bool:
+        """Whether the error of the rows is more than their rounding, or a small part of the tolerance."""
+        is_rounding = largest(self.rows.positions - self.truth) <= self.rounding_of_row
+        return self.error > self.floor and not is_rounding
+
+    @property
+    def rounding_of_row(self) -> float:
+        """Largest distance in m by which rounding moves a row."""
+        return ROUNDED * math.sqrt(self.rows.positions.shape[1]) * self.rows.noise
+
+    @property
     def resolution(self) -> float:
         """Root mean square in m below which residuals are rounding, and equal."""
         return max(self.rows.noise, FINEST * self.allowed_m)
@@ -234,13 +247,13 @@ class FileCase:
     @property
     def enough(self) -> float:
         """Largest residual in m of rows that are explained."""
-        return max(self.allowed_m, ROUNDED * self.rows.noise)
+        return max(self.allowed_m, self.rounding_of_row)
 
     @property
     def released(self) -> bool:
         """True if row 0 is the release to its last digit, so that neither its place nor its time is off."""
         off = np.abs(self.rows.positions[0, :2] - (self.right.x, self.right.y)).max()
-        same = 2 * self.rows.noise + EXACT * self.right.length
+        same = 2 * self.rows.plane_noise + EXACT * self.right.length
         return bool(self.rows.times[0] == 0 and off <= same)
 
     @property

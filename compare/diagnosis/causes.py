@@ -95,7 +95,8 @@ SAME_MOTIONS: tuple[tuple[frozenset[str], frozenset[str]], ...] = tuple(
 )
 
 # what a step error looks like: alone each may be its cause, and two at once are no other motion than a step error's
-LIKE_A_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag", "clock")
+PHASE = ("site.gravity", "pendulum.length", "clock")
+LIKE_A_DRIFT = (*PHASE, "pendulum.drag")
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 
 

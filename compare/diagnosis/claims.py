@@ -19,11 +19,13 @@ from functools import cached_property
 
 import numpy as np
 
+from reference.numbers.precision import Array
+
 from ..candidates.candidate import Deviation
 from .case import AS_IF, EITHER, HARMLESS, Explanation, FileCase, NamedModel, largest
-from .causes import EFFECTIVE, LOOSE, is_like_a_drift
+from .causes import EFFECTIVE, LOOSE, PHASE, causes_of, is_like_a_drift
 from .drift import drifting, instead_of_drift
-from .fitted import model_of, sentences, sized
+from .fitted import model_of, same_motions, sentences, sized
 from .hypotheses import (
     Claim,
     Hypothesis,
@@ -103,6 +105,14 @@ def unnamed_step_error(size_m: float, stage: str = "integrator") -> Deviation:
     return hedged(cause) if stage == AS_IF else cause
 
 
+def shows_steps(best: Hypothesis) -> bool:
+    """Return whether the length of a step may be known beside a hypothesis.
+
+    A step changes the phase, and so does an arbitrary g, length or clock: each absorbs a part of the other.
+    """
+    return all(cause.id not in PHASE for cause in best.arbitrary_inputs)
+
+
 def no_explanation(case: FileCase) -> Explanation:
     """Return the explanation that has no cause."""
     return case.explanation((), case.rows.positions - case.truth, 0)
@@ -160,7 +170,12 @@ def _beside_a_drift(
         best = _best_of(hypotheses)
 
     if best.drifts:
-        hypotheses = hypotheses + _harmless(case, list(instead_of_drift(case, best.reading)))
+        catalogue = list(causes_of(case, best.reading.program.kind))
+        rivals = [
+            *instead_of_drift(case, best.reading),
+            *same_motions(case, best.reading, catalogue),
+        ]
+        hypotheses = hypotheses + _harmless(case, rivals)
         best = _best_of(hypotheses)
     return best, hypotheses
 
@@ -284,13 +299,15 @@ class _AmongRivals:
 
         - The factor of a clock may be any number, but not beside other arbitrary numbers, which absorb its residual.
         - A factor of the rotation rate does not count as round beside arbitrary inputs: a clock has the same effect.
-        - The length of a step may be any number.
+        - The length of a step may be any number, but not beside arbitrary inputs that change the phase as a step does.
         """
         if cause.stage == "clock":
             return self._arbitrary_ids <= {cause.id}
+        if cause.stage == "integrator":
+            return shows_steps(self.best)
         if cause.id == "rate_factor":
             return not self.best.arbitrary_inputs
-        return cause.id not in self._arbitrary_ids or cause.stage == "integrator"
+        return cause.id not in self._arbitrary_ids
 
     def _in_whole_steps(self, cause: Deviation) -> Deviation:
         """Return a cause, its step replaced by the one that goes into the spacing of the rows, if there is only one."""
@@ -437,16 +454,46 @@ def likelier(other: Explanation, program: Explanation) -> Explanation:
 
 
 def _either_of(first: Explanation, second: Explanation) -> Explanation:
-    """Return the explanation that one of two is true."""
-    alternatives = []
+    """Return the explanation that one of two is true, with the conventions that both have."""
+    shared = tuple(part for part in first.conventions if part in second.conventions)
+    alternatives: list[Alternative] = []
     size_m = 0.0
     for explanation in (first, second):
         parts = [*explanation.causes, *explanation.conventions]
+        parts = [part for part in parts if part not in shared]
         size_m = max(size_m, *(part.size_m for part in parts))
-        ids = "+".join(part.id for part in parts)
-        alternatives.append(Alternative(ids, " and ".join(part.text for part in parts)))
+        alternatives += _alternatives_of(parts)
+    if len(alternatives) > ALTERNATIVES:
+        return replace(first, causes=tuple(map(hedged, first.causes)), model=None)
     cause = one_of(alternatives, size_m)
-    return replace(first, causes=(cause,), conventions=(), model=None)
+    return replace(first, causes=(cause,), conventions=shared, model=None)
+
+
+def _alternatives_of(parts: Sequence[Deviation]) -> list[Alternative]:
+    """Return what several parts say together as one alternative; one "either … or …" as its own alternatives."""
+    if len(parts) == 1 and parts[0].stage == EITHER:
+        texts = parts[0].text.removeprefix("either ").split(", or ")
+        return list(map(Alternative, parts[0].id.split("|"), texts))
+    ids = "+".join(part.id for part in parts)
+    return [Alternative(ids, " and ".join(part.text for part in parts))]
+
+
+def or_mirrored(cause: Deviation, release: Array) -> Deviation:
+    """Return a cause, or that it or a mirrored axis is true where both make the same motion.
+
+    Another hemisphere is the motion mirrored in y, and a Coriolis force of the wrong sign that mirrored in x. A release
+    on the axis is the same in both.
+
+    Args:
+        cause: that is certain, or not.
+        release: x, y, z, vx, vy, vz of the scene in m and m/s.
+    """
+    index = {"hemisphere": 1, "coriolis_sign": 0}.get(cause.id)
+    if index is None or release[index] or release[index + 3]:
+        return cause
+    axis = "xy"[index]
+    mirrored = Alternative("column_mirrored", f"prints −{axis} in its column of {axis}")
+    return one_of([Alternative(cause.id, cause.text), mirrored], cause.size_m)
 
 
 def likelier_step(named: Explanation, stepped: Explanation) -> Explanation:

@@ -24,11 +24,16 @@ from .phasors import ComplexArray, as_angles, fit_phasors, sinc
 # of the distance from the vertical: a row 0 nearer than this to the release is the release
 _NEAR = 2e-5
 _FLAT = "gives z a constant: its bob does not rise as it swings"
-_SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
+_OFF_THE_SPHERE = (
+    "does not keep |r| = l: one of its columns is wrong, its cord is a spring, "
+    "or its integrator leaves the sphere"
+)
+_WRONG_Z = "prints a z that is not the height of a bob at its x and y"
 _OFF = 1e-7  # of the cord: a larger change of the distance from the suspension is reported
 _SLIGHT = 1e-9  # of the cord: with a larger change than this, heights are ignored
 _NO_RISE = 1e-3  # of the bob's: heights that differ by less are constant
 _ALIKE = 0.05  # of the cord: how near a column has to be to the bob's heights
+_SAME_RISE = 0.1  # of the bob's rise: how near the rise of another column, or of another count, has to be to it
 ROUGHLY = 0.03  # of the distance from the vertical: how far a release in another unit may be off
 _SINGLE = 1e-6  # of the span: rounding of times in single precision
 # of the release's distance: largest residual of phasors that show when a clock began
@@ -56,6 +61,10 @@ AXES_SAID = {
 }
 _FEW = 20  # numbers that show no rounding
 _MOST = 13  # decimals or digits: numbers with as many are not rounded
+_SHOWN = 8  # different numbers, none of which ends in a zero by accident
+_FAR_APART = (
+    10  # units of the last decimal: numbers that are all farther apart are not rounded to it
+)
 _PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
 # order of a file's columns by which its third becomes the vertical
 _VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
@@ -71,61 +80,134 @@ def _is_release(row: Array, release: Array, noise: float) -> bool:
     return bool(off <= _NEAR * size + 2 * noise)
 
 
+@dataclass(frozen=True)
+class _Rounding:
+    """The rounding of some numbers.
+
+    Attributes:
+        noise: half a unit of the last digit of the largest of them, in their unit.
+        convention: what is reported; None for double precision.
+    """
+
+    noise: float
+    convention: Deviation | None = None
+
+    @classmethod
+    def said(cls, convention_id: str, text: str, noise: float) -> _Rounding:
+        """Return one that is reported by a text."""
+        return cls(noise, Deviation(convention_id, text, noise))
+
+
 def digits(rows: FileRows) -> FileRows:
     """Find the rounding of the rows: half a unit of the last digit printed, in the file's unit."""
-    values = rows.positions[np.abs(rows.positions) > 0]
+    rounding = _rounding(rows.positions)
+    of_plane = _rounding(rows.plane)
+    if rows.positions.shape[1] > 2:
+        of_heights = _rounding_of_heights(rows.positions[:, 2])
+        if of_heights is not None and of_heights.noise > rounding.noise:
+            rounding = of_heights
+    plane_noise = min(of_plane.noise, rounding.noise)
+    rounded = replace(rows, noise=rounding.noise, plane_noise=plane_noise)
+    if rounding.convention is None:
+        return rounded
+    return rounded.changed(rounding.convention)
+
+
+def _rounding(columns: Array) -> _Rounding:
+    """Return the rounding of the numbers of some columns."""
+    values = columns[np.abs(columns) > 0]
     if not len(values):
-        return rows
+        return _Rounding(0.0)
     if len(values) < _FEW:
-        return _exact(rows, values)
-    return (
-        _with_few_decimals(rows, values)
-        or _with_single_precision(rows, values)
-        or _with_few_digits(rows, values)
-        or _exact(rows, values)
-    )
+        return _exact(values)
+    decimals = _count_of_decimals(values)
+    digit_count = _count_of_digits(values)
+    if decimals is not None and _are_decimals(values, decimals, digit_count):
+        rounding = _few_decimals(values, decimals)
+        if rounding is not None:
+            return rounding
+    return _single_precision(values) or _few_digits(values, digit_count) or _exact(values)
 
 
-def _exact(rows: FileRows, values: Array) -> FileRows:
-    """Return the rows as those of numbers in double precision."""
-    size = float(np.abs(values).max())
-    return FileRows(rows.times, rows.positions, 4 * np.finfo(float).eps * size)
+def _rounding_of_heights(values: Array) -> _Rounding | None:
+    """Return the rounding of a column that may have fewer decimals than the others; None if it shows none.
 
-
-def _with_few_decimals(rows: FileRows, values: Array) -> FileRows | None:
-    """Return the rows as those of numbers with few decimals; None if they have more than their precision gives."""
-    decimals = next((n for n in range(_MOST) if _same(np.round(values, n), values)), None)
+    Few different numbers show it, since a bob rises little.
+    """
+    different = np.unique(values)
+    if len(different) < 2:
+        return None
+    if _in_single_precision(values):
+        return _single_precision(values)
+    decimals = _count_of_decimals(values)
     if decimals is None:
         return None
-    size = float(np.abs(values).max())
-    least_noise = 1e-12 * size
+    unit = 10.0**-decimals
+    if np.diff(different).min() > _FAR_APART * unit:
+        return None
+    text = f"prints {decimals} decimals of z: no more than {unit / 2:g} of its unit can be judged"
+    return _Rounding.said("decimals", text, unit / 2)
+
+
+def _exact(values: Array) -> _Rounding:
+    """Return the rounding of double precision."""
+    return _Rounding(4 * np.finfo(float).eps * float(np.abs(values).max()))
+
+
+def _count_of_decimals(values: Array) -> int | None:
+    """Return how many decimals numbers have at most; None if many."""
+    return next((n for n in range(_MOST) if _same(np.round(values, n), values)), None)
+
+
+def _count_of_digits(values: Array) -> int | None:
+    """Return how many significant digits numbers have at most; None if many."""
+    some = values[:_FEW]
+    for count in range(3, _MOST):
+        if _same(_with_digits(some, count), some) and _same(_with_digits(values, count), values):
+            return count
+    return None
+
+
+def _are_decimals(values: Array, decimals: int, digit_count: int | None) -> bool:
+    """Return whether numbers have so many decimals, and not so many digits.
+
+    `%g` prints small numbers with many decimals, and large ones with few.
+    """
+    if digit_count is None:
+        return True
+    large = values[np.abs(values) >= 10.0 ** (digit_count - decimals)]
+    return len(np.unique(large)) < _SHOWN
+
+
+def _few_decimals(values: Array, decimals: int) -> _Rounding | None:
+    """Return the rounding to some decimals; None if their precision has no more than these."""
+    least_noise = 1e-12 * float(np.abs(values).max())
     if _in_single_precision(values):
         least_noise = _single_noise(values)
     noise = 0.5 * 10.0**-decimals
     if noise < least_noise:
         return None
     text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
-    return rows.changed(Deviation("decimals", text, noise), noise=noise)
+    return _Rounding.said("decimals", text, noise)
 
 
-def _with_single_precision(rows: FileRows, values: Array) -> FileRows | None:
-    """Return the rows as those of numbers in single precision; None if they are not."""
+def _single_precision(values: Array) -> _Rounding | None:
+    """Return the rounding of single precision; None if the numbers are not in it."""
     if not _in_single_precision(values):
         return None
     noise = _single_noise(values)
     text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
-    return rows.changed(Deviation("single_precision", text, noise), noise=noise)
+    return _Rounding.said("single_precision", text, noise)
 
 
-def _with_few_digits(rows: FileRows, values: Array) -> FileRows | None:
-    """Return the rows as those of numbers with few digits; None if they have many."""
-    count = next((n for n in range(3, _MOST) if _same(_with_digits(values, n), values)), None)
-    if count is None:
+def _few_digits(values: Array, digit_count: int | None) -> _Rounding | None:
+    """Return the rounding to some significant digits; None for many."""
+    if digit_count is None:
         return None
     size = float(np.abs(values).max())
-    noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - count)
-    text = f"prints {count} digits: no more than {noise:.1g} of its unit can be judged"
-    return rows.changed(Deviation("digits", text, noise), noise=noise)
+    noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - digit_count)
+    text = f"prints {digit_count} digits: no more than {noise:.1g} of its unit can be judged"
+    return _Rounding.said("digits", text, noise)
 
 
 def _single_noise(values: Array) -> float:
@@ -170,10 +252,12 @@ class _Heights:
 def heights(rows: FileRows, length: float) -> FileRows:
     """Find the vertical: another column, upside down, or from the lowest point.
 
-    If no column has the heights of a bob on the sphere, heights are ignored.
+    If no column has the heights of a bob on the sphere, heights are left out.
     """
     if rows.positions.shape[1] < 3:
         return rows
+    if _keeps_another_cord(rows, length):
+        return _unless_coarser(rows)
     offset = _offset_of_heights(rows, length)
     if offset:
         side = "high" if offset > 0 else "low"
@@ -181,26 +265,86 @@ def heights(rows: FileRows, length: float) -> FileRows:
         moved = rows.positions - [0.0, 0.0, offset]
         rows = rows.changed(Deviation("z_offset", text, abs(offset)), positions=moved)
 
-    down = "counts z downwards"
-    counts = (
-        _Heights(1, 0.0, ""),
-        _Heights(-1, 0.0, down),
-        _Heights(1, length, "counts z from the lowest point"),
-        _Heights(-1, length, down),
-    )
-    for order, counted in itertools.product(_VERTICALS, counts):
+    for order, counted in itertools.product(_VERTICALS, _counts_of_heights(length)):
         plane = rows.positions[:, order[:2]]
         on_sphere = _on_sphere(plane, length)
         if on_sphere is None:
             continue
         column = rows.positions[:, order[2]] * counted.sign - counted.shift
-        if np.abs(column - on_sphere).max() > _ALIKE * length:
+        difference = column - on_sphere
+        if np.abs(difference).max() > _ALIKE * length:
             continue
+        rise = float(np.ptp(on_sphere))
+        if float(np.ptp(column)) < _NO_RISE * rise:
+            return _with_constant_heights(rows, rise)
+        if _are_heights(difference, rise, order, counted, 20 * rows.noise, length):
+            return _with_heights(rows, order, counted, length)
+    return _with_wrong_heights(rows, length)
 
-        if float(np.ptp(column)) < _NO_RISE * float(np.ptp(on_sphere)):
-            return _flat(rows.changed(Deviation("z_constant", _FLAT)))
-        return _with_heights(rows, order, counted, length)
-    return _flat(rows)
+
+def _are_heights(
+    difference: Array,
+    rise: float,
+    order: tuple[int, int, int],
+    counted: _Heights,
+    rounding: float,
+    length: float,
+) -> bool:
+    """Return whether a column is that of heights, by how far it is from those of a bob on the sphere.
+
+    What is printed as in the scene may be far from them. Another count of z has to be near them, and another column
+    has to rise and fall as they do.
+    """
+    if order != _VERTICALS[0]:
+        return bool(np.ptp(difference) <= _SAME_RISE * rise + rounding)
+    if counted.text:
+        return bool(
+            np.abs(difference).max() <= max(_SAME_RISE * rise, _NO_RISE * length) + rounding
+        )
+    return True
+
+
+def _counts_of_heights(length: float) -> tuple[_Heights, ...]:
+    """Return the ways in which a file may count heights, that of the scene first."""
+    down = "counts z downwards"
+    return (
+        _Heights(1, 0.0, ""),
+        _Heights(-1, 0.0, down),
+        _Heights(1, length, "counts z from the lowest point"),
+        _Heights(-1, length, down),
+    )
+
+
+def _keeps_another_cord(rows: FileRows, length: float) -> bool:
+    """Return whether the bob is below the suspension, and keeps a distance from it that is not the scene's."""
+    z = rows.positions[:, 2]
+    cord = np.linalg.norm(rows.positions, axis=1)
+    same = max(20 * rows.noise, _SLIGHT * length)
+    keeps_cord = np.ptp(cord) <= same < np.ptp(z)
+    return bool(keeps_cord and z.max() < 0 and abs(cord.mean() - length) > same)
+
+
+def _with_constant_heights(rows: FileRows, rise: float) -> FileRows:
+    """Return rows whose height is a constant without it, which is reported unless rounding hides their rise in m."""
+    if rise <= 2 * rows.noise:
+        return _flat(rows)
+    return _flat(rows.changed(Deviation("z_constant", _FLAT)))
+
+
+def wrong_heights(convention: Deviation) -> Deviation:
+    """Return the convention of a file whose x and y are right: if its bob leaves the sphere, z is wrong."""
+    if convention.id != "off_the_sphere":
+        return convention
+    return Deviation("z_wrong", _WRONG_Z, convention.size_m)
+
+
+def _with_wrong_heights(rows: FileRows, length: float) -> FileRows:
+    """Return rows in which no column is that of heights without them, and say so."""
+    on_sphere = _on_sphere(rows.plane, length)
+    if on_sphere is None:
+        return _flat(rows)
+    size_m = float(np.abs(rows.positions[:, 2] - on_sphere).max())
+    return _flat(rows.changed(Deviation("z_wrong", _WRONG_Z, size_m)))
 
 
 def _on_sphere(plane: Array, length: float) -> Array | None:
@@ -231,15 +375,20 @@ def _with_heights(
     cord = np.sqrt(square + column * column)
     drift = float(np.ptp(cord))
     if drift > max(20 * rows.noise, _OFF * length):
-        spring = Deviation("off_the_sphere", _SPRING, drift)
+        off = Deviation("off_the_sphere", _OFF_THE_SPHERE, drift)
         in_order = replace(corrected, positions=np.column_stack([plane, column]))
-        return _flat(in_order.changed(spring, cord=float(cord.mean())))
+        return _flat(in_order.changed(off, cord=float(cord.mean())))
     if corrected is not rows:
         return replace(corrected, positions=np.column_stack([plane, column]))
     # a slight drift is not reported, but such heights cannot be fitted either
-    if drift > max(20 * rows.noise, _SLIGHT * length) or rows.relative:
+    if drift > max(20 * rows.noise, _SLIGHT * length):
         return _flat(rows)
-    return rows
+    return _unless_coarser(rows)
+
+
+def _unless_coarser(rows: FileRows) -> FileRows:
+    """Return rows with their heights, unless these are rounded by more than x and y."""
+    return _flat(rows) if rows.plane_noise < rows.noise else rows
 
 
 def _offset_of_heights(rows: FileRows, length: float) -> float:
@@ -264,11 +413,7 @@ def _offset_of_heights(rows: FileRows, length: float) -> float:
 def _flat(rows: FileRows) -> FileRows:
     """Return the rows without heights."""
     plane = np.ascontiguousarray(rows.plane)
-    noise = rows.noise
-    if rows.relative:  # the smaller numbers of the plane are rounded by less
-        share = np.abs(plane).max() / np.abs(rows.positions).max()
-        noise *= float(share)
-    return replace(rows, positions=plane, noise=noise)
+    return replace(rows, positions=plane, noise=rows.plane_noise)
 
 
 @dataclass(frozen=True)
@@ -294,32 +439,38 @@ def _units_of_length(length: float) -> list[_UnitOfLength]:
     return units
 
 
-def axes(rows: FileRows, release: Array, length: float, rename: bool) -> FileRows:
+def axes(
+    rows: FileRows, printed: FileRows, release: Array, length: float, rename: bool
+) -> FileRows:
     """Find the unit of length and the names of the horizontal axes that make row 0 the release.
 
     Args:
-        rows: of the file.
+        rows: of the file, their heights as in the scene.
+        printed: the rows as they are printed, of which heights are found again in another unit.
         release: position and velocity of the scene.
         length: of the cord in m.
         rename: whether the horizontal axes may have other names.
     """
     first, last = rows.positions[[0, -1]]
-    released = any(_is_release(row, release, rows.noise) for row in (first, last))
+    released = any(_is_release(row, release, rows.plane_noise) for row in (first, last))
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
 
     ways = [*AXES_SAID] if rename else [_AS_IN_SCENE]
     for row, unit, way in itertools.product((first, last), _units_of_length(length), ways):
         placed = _placed(row, unit, way)
-        if _is_release(placed, release, rows.noise / unit.per_metre):
-            return _renamed(_in_metres(rows, unit, length), *way)
+        if _is_release(placed, release, rows.plane_noise / unit.per_metre):
+            return _renamed(_in_metres(rows, printed, unit, length), *way)
+    angles = _from_angles(printed, release, length)
+    if angles is not None:
+        return angles
 
     distance = np.hypot(*release[:2])
     for unit, way in _rough_ways(first, release, length, ways):
         placed = _placed(first, unit, way)
         if np.abs(placed - release[:2]).max() < ROUGHLY * distance:
-            return _renamed(_in_metres(rows, unit, length), *way)
-    return _from_angles(rows, release, length) or replace(rows, starts=False)
+            return _renamed(_in_metres(rows, printed, unit, length), *way)
+    return replace(rows, starts=False)
 
 
 def _placed(row: Array, unit: _UnitOfLength, way: _Axes) -> Array:
@@ -351,9 +502,9 @@ def _rough_ways(
                 yield _METRES, way
 
 
-def _from_angles(rows: FileRows, release: Array, length: float) -> FileRows | None:
+def _from_angles(printed: FileRows, release: Array, length: float) -> FileRows | None:
     """Return rows that give angles of the cord as positions in m; None if they do not."""
-    first = rows.positions[0]
+    first = printed.positions[0]
     distance = float(np.hypot(*release[:2]))
     # the angle of each coordinate by itself, or that of the cord along the direction of the bob
     separate = np.arcsin(np.clip(release[:2] / length, -1, 1))
@@ -361,40 +512,40 @@ def _from_angles(rows: FileRows, release: Array, length: float) -> FileRows | No
     polar = direction * math.asin(min(1.0, distance / length))
     for unit, size in (("degrees", 180 / math.pi), ("radians", 1.0)):
         for expected in (separate, polar):
-            near = _NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size
+            near = _NEAR * float(np.abs(expected).max()) + 2 * printed.plane_noise / size
             if not np.abs(first[:2] / size - expected).max() <= near:
                 continue
-            angles = rows.plane / size
+            angles = printed.plane / size
             plane = length * np.sin(angles)
             if expected is polar:
                 cord_angle = np.hypot(angles[:, 0], angles[:, 1])
                 plane = length * angles * sinc(cord_angle)[:, None]
             text = f"gives x and y as angles of the cord in {unit}"
-            convention = Deviation("angles", text, float(np.abs(first).max()))
-            return rows.changed(convention, positions=plane, noise=rows.noise / size * length)
+            convention = Deviation("angles", text, float(np.abs(first[:2]).max()))
+            plane_noise = printed.plane_noise / size * length
+            rows = printed.changed(
+                convention,
+                positions=np.column_stack([plane, printed.positions[:, 2:]]),
+                noise=max(plane_noise, printed.noise),
+                plane_noise=plane_noise,
+            )
+            return heights(rows, length)
     return None
 
 
-def _in_metres(rows: FileRows, unit: _UnitOfLength, length: float) -> FileRows:
-    """Return the rows in metres, with what is reported of their unit.
-
-    Heights are ignored if they are not those of the cord then.
-    """
+def _in_metres(rows: FileRows, printed: FileRows, unit: _UnitOfLength, length: float) -> FileRows:
+    """Return the rows in metres, with what is reported of their unit, and their heights found again."""
     if not unit.text:
         return rows
-    positions = rows.positions / unit.per_metre
-    # whether it keeps the cord was judged in the wrong unit
-    conventions = tuple(part for part in rows.conventions if part.id != "off_the_sphere")
-    rows = replace(rows, conventions=conventions)
-    convention = Deviation("unit_of_length", unit.text, largest(positions - rows.positions))
-    noise = rows.noise / unit.per_metre
-    in_metres = rows.changed(convention, positions=positions, noise=noise)
-    if positions.shape[1] < 3:
-        return in_metres
-    x, y, z = positions.T
-    on_sphere = -np.sqrt(np.maximum(length**2 - x**2 - y**2, 0))
-    off = np.abs(z - on_sphere).max()
-    return in_metres if off < _NO_RISE * length else _flat(in_metres)
+    positions = printed.positions / unit.per_metre
+    size_m = largest(positions[:, :2] - printed.plane)
+    in_metres = printed.changed(
+        Deviation("unit_of_length", unit.text, size_m),
+        positions=positions,
+        noise=printed.noise / unit.per_metre,
+        plane_noise=printed.plane_noise / unit.per_metre,
+    )
+    return heights(in_metres, length)
 
 
 def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> FileRows:
@@ -409,8 +560,8 @@ def _renamed(rows: FileRows, order: tuple[int, int], signs: tuple[int, int]) -> 
 
 def clock(rows: FileRows, release: Array) -> FileRows:
     """Find rows in reverse order, and a clock that does not start at 0."""
-    begins = _is_release(rows.positions[0], release, rows.noise)
-    ends = _is_release(rows.positions[-1], release, rows.noise)
+    begins = _is_release(rows.positions[0], release, rows.plane_noise)
+    ends = _is_release(rows.positions[-1], release, rows.plane_noise)
     if ends and not begins and len(rows.times) > 2:
         return replace(_reversed(rows), starts=True)
     if begins and 0 < rows.times[0] < rows.times[-1]:
@@ -521,7 +672,8 @@ def rounded_clock(rows: FileRows, frequency: float) -> FileRows:
     if (exact.astype(np.float32) == times.astype(np.float32)).all():
         return replace(rows, times=exact)
     speed = frequency * float(np.abs(rows.plane).max())
-    return replace(rows, noise=rows.noise + error_s * speed)
+    moved_m = error_s * speed
+    return replace(rows, noise=rows.noise + moved_m, plane_noise=rows.plane_noise + moved_m)
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,15 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from .approximated import of_approximation
-from .case import AS_IF, Explanation, FileCase, FileRows
-from .claims import by_growth, explanation_of, likelier, likelier_step, no_explanation
+from .case import AS_IF, WITHOUT_HEIGHTS, Explanation, FileCase, FileRows
+from .claims import (
+    by_growth,
+    explanation_of,
+    likelier,
+    likelier_step,
+    no_explanation,
+    or_mirrored,
+)
 from .conventions import (
     ROUGHLY,
     axes,
@@ -27,11 +34,12 @@ from .conventions import (
     rounded_clock,
     shifted,
     unit_of_time,
+    wrong_heights,
 )
 from .fitted import polished, readings_of
 from .formulas import of_formula
 from .hypotheses import Claim
-from .observed import of_observation
+from .observed import of_evident_columns, of_observation
 from .programs import Program, SphericalPendulum
 from .runaways import falls, growth
 from .slips import of_slip
@@ -49,7 +57,7 @@ QUESTIONED = RENAMED | {
     "rows_early",
 }
 FAST = 20.0  # times faster than the scene: nothing is run
-LEFT_OUT = ("z_constant", "off_the_sphere")  # heights that no explanation is asked for
+LEFT_OUT = ("z_constant", *WITHOUT_HEIGHTS)  # heights that no explanation is asked for
 MOST_ROWS = 20_000  # that are looked at: the first half of them, and as many evenly spaced
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 ROWS_A_SWING = 20  # that show what an integrator does
@@ -123,7 +131,7 @@ class KnownScene:
     def printed(self, times: Array, columns: dict[str, Array]) -> FileRows:
         """Return the rows of a file as they are printed."""
         positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
-        return digits(FileRows(times, positions, 0.0))
+        return digits(FileRows(times, positions, 0.0, 0.0))
 
     def rows(
         self, times: Array, columns: dict[str, Array], without: Collection[str] = ()
@@ -135,10 +143,11 @@ class KnownScene:
             columns: x, y and perhaps z as in the file.
             without: ids of conventions that the file is taken not to have.
         """
-        rows = heights(self.printed(times, columns), self.right.length)
+        printed = self.printed(times, columns)
+        rows = heights(printed, self.right.length)
         if {"unit_of_length", "angles"}.isdisjoint(without):
             rename = RENAMED.isdisjoint(without)
-            rows = axes(rows, self.start, self.right.length, rename)
+            rows = axes(rows, printed, self.start, self.right.length, rename)
         if {"rows_reversed", "clock_offset"}.isdisjoint(without):
             rows = clock(rows, self.start)
         if "unit_of_time" not in without:
@@ -225,7 +234,10 @@ def _explained(file: _File, without: frozenset[str] = frozenset()) -> Explanatio
             conventions.append(convention)
         elif finding is not None:
             doubtful.append(finding)
-    best = replace(best, conventions=tuple(conventions), causes=(*best.causes, *doubtful))
+    if best.explains and not best.causes:
+        conventions = list(map(wrong_heights, conventions))
+    causes = [or_mirrored(cause, file.problem.start) for cause in best.causes]
+    best = replace(best, conventions=tuple(conventions), causes=(*causes, *doubtful))
     return _with_slip(file, rows, best)
 
 
@@ -236,16 +248,28 @@ def _explained_by_columns(file: _File, rows: FileRows) -> Explanation | None:
     """
     case = file.case(rows)
     heights_left_out = any(part.id in LEFT_OUT for part in rows.conventions)
-    if case.error <= case.floor and not heights_left_out:
+    if not case.needs_cause and not heights_left_out:
         return None
-    printed = file.problem.printed(file.times, file.columns)
-    observed = of_observation(file.case(printed, MAPPED))
+    printed = file.case(file.problem.printed(file.times, file.columns), MAPPED)
+    observed = of_observation(printed)
     if observed is None:
-        return None
+        return _explained_by_evident_columns(printed, case)
     if observed.price <= SIMPLE:
         named, _ = explanation_of(case, readings_of(case))
         return likelier(observed, named)
     return likelier(observed, first_good_explanation(case, file.problem.scene))
+
+
+def _explained_by_evident_columns(printed: FileCase, case: FileCase) -> Explanation | None:
+    """Return the explanation by columns that are constants or copies in the file itself, unless a program explains it.
+
+    None if there are none such.
+    """
+    observed = of_evident_columns(printed)
+    if observed is None:
+        return None
+    named, _ = explanation_of(case, readings_of(case))
+    return None if named.explains else observed
 
 
 def _with_best_conventions(file: _File, rows: FileRows) -> tuple[Explanation, FileRows]:
@@ -286,7 +310,7 @@ def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:
 
 def first_good_explanation(case: FileCase, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
-    if case.error <= case.floor:
+    if not case.needs_cause:
         return no_explanation(case)
     named, best = explanation_of(case, readings_of(case))
     if best is None or not named.causes:

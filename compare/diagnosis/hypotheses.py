@@ -17,7 +17,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from .case import FileCase, largest, rms
-from .causes import DRIFT, LIKE_A_DRIFT, Cause, is_like_a_drift, shortest_decimal
+from .causes import DRIFT, LIKE_A_DRIFT, SAME_MOTIONS, Cause, is_like_a_drift, shortest_decimal
 from .fitted import MODELS, adjusted_to, polished
 from .readings import CauseReading
 from .thresholds import (
@@ -238,7 +238,7 @@ class Hypothesis(Claim):
         if cause.stage == "integrator":
             # on the sphere what a step does is known roughly, and so is the step
             return self.reading.program.kind != "sphere" and self._divides(value, doubt)
-        if cause.id in LIKE_A_DRIFT and self._steps_roughly:
+        if cause.id in LIKE_A_DRIFT and self.steps_roughly:
             return False
         return has_few_digits(value, doubt) or (factors and self._is_factor(cause))
 
@@ -252,7 +252,13 @@ class Hypothesis(Claim):
         return has_few_digits(factor, doubt / abs(scene), FACTOR_DIGITS)
 
     @property
-    def _steps_roughly(self) -> bool:
+    def without_steps(self) -> Hypothesis:
+        """The hypothesis without its integrator, everything else fitted again."""
+        steps = [cause for cause in self.reading.causes if cause.stage == "integrator"]
+        return self.refitted(self.reading.reader.without(self.reading, steps))
+
+    @property
+    def steps_roughly(self) -> bool:
         """Whether the residual beside a step is more than rounding; the numbers that are like a drift absorb a part."""
         stepped = any(cause.stage == "integrator" for cause in self.reading.causes)
         return stepped and self.residual_rms_m > NEEDED * self.case.resolution
@@ -419,7 +425,8 @@ def _is_rival(best: Hypothesis, other: Hypothesis) -> bool:
     if other.cause_ids >= best.cause_ids or other.cause_ids < best.cause_ids:
         return False
     explains_without_arbitrary = best.arbitrary_inputs and not other.arbitrary and other.explains
-    if not explains_without_arbitrary and other.residual_rms_m > RIVAL * best.residual_rms_m:
+    explains_as_well = explains_without_arbitrary or _is_alike_without_steps(best, other)
+    if not explains_as_well and other.residual_rms_m > RIVAL * best.residual_rms_m:
         return False
     if best.takes_from(other):
         return False
@@ -428,3 +435,17 @@ def _is_rival(best: Hypothesis, other: Hypothesis) -> bool:
     # what is the same motion as a step error is a rival of it at any price
     is_same_motion = all(map(is_like_a_drift, other.cause_ids ^ best.cause_ids))
     return is_same_motion or other.price <= best.price
+
+
+def _is_alike_without_steps(best: Hypothesis, other: Hypothesis) -> bool:
+    """Return whether two hypotheses are the same motion in principle, which steps that are known roughly do not tell.
+
+    Then their residuals without the steps are about as large.
+    """
+    if not (best.steps_roughly and other.steps_roughly):
+        return False
+    mine = best.cause_ids - other.cause_ids
+    others = other.cause_ids - best.cause_ids
+    if (mine, others) not in SAME_MOTIONS:
+        return False
+    return other.without_steps.residual_rms_m <= RIVAL * best.without_steps.residual_rms_m

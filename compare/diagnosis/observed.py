@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 
 import numpy as np
 
@@ -158,9 +159,26 @@ class _Column:
             def made(count: int) -> Array:
                 return np.full_like(self.printed, float(np.mean(self.printed[:count])))
 
-            level = float(np.mean(self.printed))
-            text = f"prints {self.name} as a constant, {level:.{_PRINTED_DIGITS}g}"
-            yield self._mapped("constant", text, made)
+            yield self._mapped("constant", self._text_of_constant(), made)
+
+    def _text_of_constant(self) -> str:
+        """Return what is said of a constant column, which rounding may have made."""
+        level = float(np.mean(self.printed))
+        text = f"prints {self.name} as a constant, {level:.{_PRINTED_DIGITS}g}"
+        decimals = max(0, -int(Decimal(f"{level:.{_PRINTED_DIGITS}g}").as_tuple().exponent))
+        is_rounded = np.abs(self.true - level).max() <= 0.5 * 10.0**-decimals
+        return f"{text}, or with too few digits" if is_rounded else text
+
+    def evident_text(self, others: Iterable[int]) -> str:
+        """Return what is said of a column that is a constant, or a copy of another one, by itself; "" for none."""
+        if np.ptp(self.printed) <= self.case.resolution:
+            return self._text_of_constant()
+        for other in others:
+            column = self.case.rows.positions[:, other]
+            for sign, prefix in ((1, ""), (-1, "−")):
+                if np.abs(self.printed - sign * column).max() <= self.case.resolution:
+                    return f"prints {prefix}{self.names[other]} in its column of {self.name}"
+        return ""
 
     def _copied(self) -> Iterator[_ColumnMap]:
         for other, other_name in enumerate(self.names):
@@ -297,8 +315,8 @@ class _Plane:
         uncertainty = self._relative_uncertainty(made(every))
         radians = _FittedNumber.of(turn, uncertainty)
         degrees = _FittedNumber.of(math.degrees(turn), math.degrees(uncertainty))
-        angle = f"{degrees.text} degrees" if radians.price else f"{radians.text} rad"
-        text = f"prints x and y turned by {angle}, anticlockwise"
+        angle = f"{degrees.text}°" if radians.price else f"{radians.text} rad"
+        text = f"prints x and y turned {_with_sense(angle)}"
         # the angle is round if it is so in one of the units
         return self._mapped("turned", text, made, 1 + radians.price * degrees.price)
 
@@ -325,7 +343,7 @@ class _Plane:
         turn = math.degrees(cmath.phase(factor))
         degrees = _FittedNumber.of(turn, math.degrees(uncertainty))
         scaled = f"prints x and y times {scale.text}"
-        text = f"{scaled} and turned by {degrees.text} degrees, anticlockwise"
+        text = f"{scaled} and turned {_with_sense(f'{degrees.text}°')}"
         return self._mapped("turned", text, made, 2 + scale.price + degrees.price)
 
     def _similar(self) -> _ColumnMap:
@@ -338,10 +356,16 @@ class _Plane:
         factor, shift = solved(basis, self.printed)
         text = (
             f"prints x and y times {abs(factor):.6g}, "
-            f"turned by {math.degrees(cmath.phase(factor)):.6g} degrees, "
+            f"turned {_with_sense(f'{math.degrees(cmath.phase(factor)):.6g}°')}, "
             f"with {shift.real:.6g} m and {shift.imag:.6g} m added"
         )
         return self._mapped("moved", text, made, 8)
+
+
+def _with_sense(angle: str) -> str:
+    """Return an angle and its sense, without a sign."""
+    sense = "clockwise" if angle.startswith("-") else "anticlockwise"
+    return f"by {angle.removeprefix('-')}, {sense}"
 
 
 def _maps_of_plane(case: FileCase) -> list[_ColumnMap]:
@@ -418,6 +442,31 @@ def of_observation(case: FileCase) -> Explanation | None:
             doubtful.append(finding)
     explanation = case.explanation(tuple(doubtful), residuals, int(choice.price))
     return replace(explanation, conventions=(*explanation.conventions, *certain))
+
+
+def of_evident_columns(case: FileCase) -> Explanation | None:
+    """Return the explanation that a column is a constant or a copy in the file itself; None if none is.
+
+    Its first row is not the release, as those of the other columns are; so no motion from there is like that, whatever
+    made the others. The residual is that of the others.
+
+    The case has the rows as they are printed.
+    """
+    starts = np.abs(case.rows.positions[0] - case.truth[0]) <= case.enough
+    if case.rows.times[0] != 0 or starts.all() or not starts.any():
+        return None
+    residuals = case.rows.positions - case.truth
+    findings = []
+    for index in np.flatnonzero(~starts):
+        column = _Column(case, int(index))
+        text = column.evident_text(np.flatnonzero(starts))
+        if not text:
+            return None
+        word = "constant" if "constant" in text else "copied"
+        findings.append(Deviation(f"column_{word}", text, float(np.abs(residuals[:, index]).max())))
+        residuals[:, index] = 0.0
+    explanation = case.explanation((), residuals, len(findings))
+    return replace(explanation, conventions=(*explanation.conventions, *findings))
 
 
 def _cheapest_choice(case: FileCase, wrong: Sequence[int]) -> _Choice:

@@ -25,7 +25,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
-from .claims import explanation_of, graded, with_alternative_steps
+from .claims import explanation_of, graded, hedged, shows_steps, with_alternative_steps
 from .families import fit_pendulum
 from .fitted import polished, readings_of
 from .hypotheses import Claim, Hypothesis
@@ -278,6 +278,8 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     )
     if step is None:
         return None
+    if not shows_steps(best):
+        step = hedged(step)
     causes = (*explanation.causes, step)
     return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
 

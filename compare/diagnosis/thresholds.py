@@ -9,9 +9,9 @@ value of it an explanation may not be found, but none becomes certain.
 # tests/compare/diagnosis/test_same_words.py
 FINEST = 1e-3
 
-# Times the rounding of the file: the largest of many rounded numbers is off by as much as this.
+# Times the largest rounding of a row, √2 or √3 times that of its numbers: a program's own steps are rounded too.
 # tests/compare/diagnosis/test_claims.py: test_what_rounding_leaves_is_explained
-ROUNDED = 1.5
+ROUNDED = 1.05
 
 # Factor by which the residual grows at least without a part of an explanation that is certain, everything else
 # fitted again. If the tolerance is not reached, the error has to shrink by the square of this before anything is named;

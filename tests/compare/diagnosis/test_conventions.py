@@ -48,7 +48,7 @@ def test_a_bob_that_leaves_the_sphere_keeps_its_horizontal_columns_in_order():
     cord = 10 + 1e-4 * np.sin(3 * times)
     east, north = 0.5 * np.cos(times), 0.3 * np.sin(times)
     down = -np.sqrt(cord**2 - east**2 - north**2)
-    read = heights(FileRows(times, np.column_stack([east, down, north]), 0.0), 10.0)
+    read = heights(FileRows(times, np.column_stack([east, down, north]), 0.0, 0.0), 10.0)
     assert [part.id for part in read.conventions] == ["vertical_is_not_z", "off_the_sphere"]
     np.testing.assert_array_equal(
         np.sort(np.abs(read.plane).max(axis=0)), [0.3 * np.abs(np.sin(times)).max(), 0.5]
