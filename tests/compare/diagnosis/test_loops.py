@@ -7,6 +7,7 @@ import random
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from loops import LANGUAGES, LOOPS, Loop, drawn_loop, source_of
 from mistakes import told
@@ -93,3 +94,30 @@ def test_a_loop_that_a_named_method_explains_nearly_as_well_is_not_called_that_m
     found = told(scene, times, columns, 1e-8)
     assert "integrator_semi_implicit_euler" not in found.words, list(found.explanation.lines())
     assert any(f"integrator_{word}" in cause.id for cause in found.explanation.causes)
+
+
+@pytest.mark.parametrize("step_s", [0.01, 0.05])
+def test_a_step_is_not_known_beside_a_number_that_is_not_round(step_s: float) -> None:
+    """Velocity Verlet that keeps its acceleration: its velocities lag by a step, as those of no named method do.
+
+    Another method of twice the step comes near it, with another g to make up for its phase.
+    """
+    scene = load_scene("paris", ["site.gravity_is=effective", "run.t_end=400", "inputs=binary64"])
+    square = float(scene.exact.gravity) / float(scene.exact.length)
+    turn = 2j * 7.292115e-5 * math.sin(math.radians(float(scene.exact.latitude)))
+    every = round(0.5 / step_s)
+    place = complex(0.3, 0.4)
+    velocity = 0j
+    acceleration = -square * place
+    rows = []
+    for count in range(600 * every + 1):
+        if count % every == 0:
+            rows.append(place)
+        place += velocity * step_s + acceleration * step_s**2 / 2
+        following = -square * place - turn * velocity
+        velocity += step_s * (acceleration + following) / 2
+        acceleration = following
+    printed = np.array(rows)
+    x, y = printed.real.copy(), printed.imag.copy()
+    found = told(scene, 0.5 * np.arange(601.0), {"x": x, "y": y}, 5e-7)
+    assert not [word for word in found.words if word.startswith("integrator_")]
