@@ -79,8 +79,6 @@ _SAME_MOTION = (
     # the turn of the plane is Ω sin φ, whatever makes it
     ("site.latitude", "site.rotation_rate"),
     ("site.latitude", "solar_day"),
-    # beside a step error, which changes the phase as the vertical centrifugal force does
-    ("no_tilt", "no_centrifugal"),
     ("hemisphere", "coriolis_sign"),
     ("hemisphere", "turned_plane_sign"),
     ("coriolis_sign", "turned_plane_sign"),

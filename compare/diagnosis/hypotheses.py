@@ -434,7 +434,8 @@ def _is_rival(best: Hypothesis, other: Hypothesis) -> bool:
         return False
     # what is the same motion as a step error is a rival of it at any price
     is_same_motion = all(map(is_like_a_drift, other.cause_ids ^ best.cause_ids))
-    return is_same_motion or other.price <= best.price
+    # where not even the best one explains the rows, what is cheaper is not more likely
+    return is_same_motion or not best.explains or other.price <= best.price
 
 
 def _is_alike_without_steps(best: Hypothesis, other: Hypothesis) -> bool:
