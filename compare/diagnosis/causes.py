@@ -50,6 +50,8 @@ EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal fo
 TWICE = "to a g that contains it already (--set site.gravity_is=ellipsoid)"
 ADDED_TWICE = f"adds the centrifugal force {TWICE}"
 NO_CHANGE = "leaves out the centrifugal force's change along the swing"
+# of many clocks that are off by this factor: it may have another origin
+LINSPACE = "as from a linspace that counts its ends wrongly"
 CLOCK = "has a clock that runs {value} times as fast as its motion: divide its times by that"
 FACTORS = (
     2.0,
@@ -76,6 +78,8 @@ _SAME_MOTION = (
     ("clock", "site.gravity site.rotation_rate"),
     ("clock", "pendulum.length site.rotation_rate"),
     ("site.gravity", "pendulum.length"),
+    # the vertical centrifugal force makes g smaller
+    ("site.gravity", "no_lift"),
     # the turn of the plane is Ω sin φ, whatever makes it
     ("site.latitude", "site.rotation_rate"),
     ("site.latitude", "solar_day"),
@@ -85,6 +89,8 @@ _SAME_MOTION = (
     ("hemisphere inertial_rest", "turned_plane_sign"),
     ("coriolis_sign inertial_rest", "turned_plane_sign"),
     ("coriolis_sign inertial_rest", "hemisphere inertial_rest"),
+    # at the pole there is no centrifugal force at the suspension, and the plane of the swing rests among the stars
+    ("pole", "pole no_centrifugal turned_plane"),
     # rows that are late show a bob that moves already
     ("late", "release.vx release.vy"),
 )
@@ -182,11 +188,12 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
 
 
 def _linspace(intervals: int) -> Iterator[Cause]:
-    """Yield the clocks of a `linspace` that counts its ends."""
+    """Yield the clocks of a `linspace` that counts its ends wrongly."""
     rows = intervals + 1
-    for pace, way in ((1 - 1 / rows, "slow"), (rows / intervals, "fast")):
-        clock = f"has a clock too {way} by one part in its {rows} rows"
-        text = f"{clock} (a linspace that counts its ends)"
+    # the times of the clock are those of the motion times 1 + 1/intervals, or times 1 - 1/rows
+    clocks = (("fast", intervals, intervals / rows), ("slow", rows, rows / intervals))
+    for error, part, pace in clocks:
+        text = f"has a clock that is too {error} by one part in {part}, {LINSPACE}"
         yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
 
 
@@ -230,29 +237,29 @@ def normal_gravities(latitude: float) -> tuple[float, ...]:
 
 
 def _gravity(right: Program) -> Iterator[Cause]:
-    def reading(name: str, cause_id: str, text: str, cost: float = NAMED) -> Cause:
-        return Cause(cause_id, "gravity", text, _set(gravity_reading=name), cost, stage="gravity")
+    def reading(name: str, cause_id: str, text: str, cost: float = NAMED, **fields: bool) -> Cause:
+        change = _set(gravity_reading=name, **fields)
+        return Cause(cause_id, "gravity", text, change, cost, stage="gravity")
 
     ellipsoid = right.gravity_reading == "ellipsoid"
     if right.rate:
         if ellipsoid and right.radius:
-            yield reading("none", "no_centrifugal", f"{EFFECTIVE}, and {NO_CHANGE}", 0.2)
+            text = f"{EFFECTIVE}, and {NO_CHANGE}"
+            yield reading("effective", "no_centrifugal", text, 0.2, no_change=True)
             yield reading("effective", "effective_gravity", EFFECTIVE, 0.2)
             text = "leaves out the horizontal centrifugal force but keeps the vertical one"
-            yield reading("no_tilt", "no_tilt", text)
+            yield reading("no_tilt", "no_tilt", text, no_change=True)
             text = "keeps the horizontal centrifugal force but leaves out the vertical one"
             yield reading("tilt", "no_lift", text)
             text = "takes the horizontal centrifugal force without the sine of the latitude"
             yield reading("tilt_no_sine", "tilt_no_sine", text, RARE)
-            yield reading("uniform", "uniform_gravity", NO_CHANGE)
+            # of a group of its own: whatever is added at the suspension may change along the swing
+            no_change = _set(no_change=True)
+            yield Cause("uniform_gravity", "gravity_change", NO_CHANGE, no_change, stage="gravity")
         else:
             whole = right.gravity_reading != "effective"
-            yield reading(
-                "none",
-                "no_centrifugal",
-                "leaves out the centrifugal force" if whole else NO_CHANGE,
-                0.2,
-            )
+            text = "leaves out the centrifugal force" if whole else NO_CHANGE
+            yield reading("effective", "no_centrifugal", text, 0.2, no_change=True)
             if right.gravity_reading == "effective":
                 yield reading("ellipsoid", "ellipsoid_gravity", ADDED_TWICE)
                 text = f"adds the centrifugal force, on a sphere of 6371000 m, {TWICE}"
@@ -349,9 +356,10 @@ def _rates_of_earth(right: Program) -> Iterator[Cause]:
 
 def _coriolis_forces(kind: str) -> Iterator[Cause]:
     """Yield other Coriolis forces."""
-    wrong_sign = "gives the Coriolis force the wrong sign"
+    # both are one motion: the centrifugal force has the square of the rate
+    wrong_sign = "gives the Coriolis force the wrong sign, or turns the Earth the other way"
     factors = (
-        ("coriolis_sign", f"{wrong_sign}: its plane turns the wrong way", -1.0),
+        ("coriolis_sign", wrong_sign, -1.0),
         ("coriolis_half", "omits the factor 2 in the Coriolis force", 0.5),
         ("coriolis_double", "doubles the Coriolis force", 2.0),
         ("no_coriolis", "leaves out the Coriolis force", 0.0),
@@ -397,7 +405,7 @@ def _latitude(right: Program) -> Iterator[Cause]:
     if latitude:
         # of a group of its own: another latitude may have the wrong sign as well
         text = "gives the latitude the wrong sign"
-        yield Cause("hemisphere", "hemisphere", text, _set(latitude=-latitude), 0.35)
+        yield Cause("hemisphere", "hemisphere", text, _other_hemisphere, 0.35)
         radians = math.degrees(latitude) % 360
         text = "takes the latitude in degrees as if it were in radians"
         yield Cause("radians", "latitude", text, _set(coriolis_latitude=radians))
@@ -406,11 +414,14 @@ def _latitude(right: Program) -> Iterator[Cause]:
         yield Cause("radians", "latitude", text, _set(latitude=folded, coriolis_latitude=radians))
     text = "uses the colatitude instead of the latitude"
     yield Cause("colatitude", "latitude", text, _set(latitude=90 - abs(latitude)))
+    pole = math.copysign(90.0, latitude)
+    origin = f"(latitude {pole:g}, or no sine of the latitude)"
+    all_of_omega = f"takes the vertical part of Ω to be all of Ω, as at the pole {origin}"
+    if latitude != pole:
+        text = f"{all_of_omega}, and g as the effective gravity"
+        yield Cause("pole", "latitude", text, _at_the_pole)
     if abs(latitude) not in (0.0, 90.0):
-        text = "takes the vertical part of Ω to be all of Ω, without the sine of the latitude"
-        yield Cause(
-            "no_sine", "latitude", text, _set(coriolis_latitude=math.copysign(90.0, latitude))
-        )
+        yield Cause("no_sine", "latitude", all_of_omega, _set(coriolis_latitude=pole))
         if right.flattening:
             phi = math.radians(latitude)
             squeeze = (1 - right.flattening) ** 2
@@ -422,6 +433,16 @@ def _latitude(right: Program) -> Iterator[Cause]:
         yield fitted_number(
             "site.latitude", "latitude", "takes site.latitude to be {value}", "latitude"
         )
+
+
+def _other_hemisphere(program: Program) -> Program:
+    """Return a program with its latitude's other sign."""
+    return program.changed(latitude=-program.latitude)
+
+
+def _at_the_pole(program: Program) -> Program:
+    """Return a program at the pole of its hemisphere."""
+    return program.changed(latitude=math.copysign(90.0, program.latitude))
 
 
 def _release() -> Iterator[Cause]:

@@ -23,7 +23,7 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from .case import AS_IF, EITHER, HARMLESS, Explanation, FileCase, NamedModel, largest
-from .causes import EFFECTIVE, LOOSE, PHASE, causes_of, is_like_a_drift
+from .causes import LOOSE, PHASE, causes_of, is_like_a_drift
 from .drift import drifting, instead_of_drift
 from .fitted import model_of, same_motions, sentences, sized
 from .hypotheses import (
@@ -39,9 +39,14 @@ from .thresholds import ALTERNATIVES, CATALOGUE, CHANCE, NEEDED, RIVAL
 
 # numbers that change the phase or the amplitude as the drift of a step error does
 _ONE_DRIFT = ("site.gravity", "pendulum.length", "pendulum.drag")
-# a g that is the effective one, with the centrifugal force's change along the swing and without it
-_EFFECTIVE_G = "effective_gravity"
-_WITHOUT_CHANGE = "no_centrifugal"
+# causes that say all that another one says, and more
+_SHORTER = {
+    # a g that is the effective one, without the centrifugal force's change along the swing
+    "no_centrifugal": "effective_gravity",
+    # all of Ω is vertical, and g is the effective one
+    "pole": "no_sine",
+}
+_LONGER = {shorter: longer for longer, shorter in _SHORTER.items()}
 # a linear motion shows only their quotient
 _ONE_NUMBER = ("site.gravity", "pendulum.length")
 # numbers of which a motion may show one combination alone: each may be wrong, or both
@@ -259,8 +264,10 @@ class _AmongRivals:
     def _sized(self) -> Iterator[Deviation]:
         """Yield the causes that are reported, each with the distance by which it moves the bob."""
         for cause in sized(self.best.case, self.reported.reading):
-            if cause.id == _WITHOUT_CHANGE and cause.id not in self._ids_by_hypothesis[self.best]:
-                yield replace(cause, id=_EFFECTIVE_G, text=EFFECTIVE)
+            is_shortened = cause.id not in self._ids_by_hypothesis[self.best]
+            if is_shortened and cause.id in _SHORTER:
+                shorter = _SHORTER[cause.id]
+                yield replace(cause, id=shorter, text=self._texts[shorter])
             else:
                 yield cause
 
@@ -277,8 +284,8 @@ class _AmongRivals:
 
     def _growth(self, cause: Deviation) -> float:
         """Return the factor by which the residual grows without a cause."""
-        is_renamed = cause.id == _EFFECTIVE_G and cause.id not in self.growths
-        return self.growths[_WITHOUT_CHANGE if is_renamed else cause.id]
+        is_shortened = cause.id not in self.growths
+        return self.growths[_LONGER[cause.id] if is_shortened else cause.id]
 
     def _names_the_step(self, cause: Deviation) -> bool:
         """Return whether the method of a step is known: its length is a round number, and the residual is rounding."""
@@ -331,17 +338,25 @@ class _AmongRivals:
     def _ids_by_hypothesis(self) -> dict[Hypothesis, frozenset[str]]:
         """The ids of the causes of the hypothesis and of each rival.
 
-        If all of them take g as effective, and some say more about it, only "effective" is kept.
+        If all of them say what a cause says, and some of them more, only that cause is kept.
         """
         by_hypothesis = {one: one.cause_ids for one in (self.best, *self.rivals)}
-        effective = {_WITHOUT_CHANGE, _EFFECTIVE_G}
-        variants = {cause_ids & effective for cause_ids in by_hypothesis.values()}
-        if all(variants) and len(variants) > 1:
-            return {
-                one: (cause_ids - effective) | {_EFFECTIVE_G}
-                for one, cause_ids in by_hypothesis.items()
-            }
+        for longer, shorter in _SHORTER.items():
+            forms = {longer, shorter}
+            variants = {cause_ids & forms for cause_ids in by_hypothesis.values()}
+            if all(variants) and len(variants) > 1:
+                by_hypothesis = {
+                    one: (cause_ids - forms) | {shorter} for one, cause_ids in by_hypothesis.items()
+                }
         return by_hypothesis
+
+    @cached_property
+    def _texts(self) -> dict[str, str]:
+        """The texts of the causes of the hypothesis and of its rivals, by id."""
+        texts: dict[str, str] = {}
+        for hypothesis in (*self.rivals, self.best):
+            texts |= sentences(hypothesis.case, hypothesis.reading)
+        return texts
 
     @cached_property
     def _shared_ids(self) -> frozenset[str]:
@@ -382,8 +397,6 @@ class _AmongRivals:
 def _alternative(hypothesis: Hypothesis, cause_ids: frozenset[str]) -> Alternative:
     """Return some causes of a hypothesis as one alternative."""
     texts = dict(sentences(hypothesis.case, hypothesis.reading))
-    if _EFFECTIVE_G in cause_ids and _EFFECTIVE_G not in texts:
-        texts[_EFFECTIVE_G] = EFFECTIVE
     chosen = [cause_id for cause_id in texts if cause_id in cause_ids]
     return Alternative("+".join(chosen), " and ".join(texts[cause_id] for cause_id in chosen))
 

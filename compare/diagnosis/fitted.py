@@ -93,8 +93,11 @@ def same_motions(
             if not before <= cause_ids or exchanged_ids in seen:
                 continue
             other = _exchanged(known, before, after, catalogue)
-            if other is not None:
-                seen.add(exchanged_ids)
+            if other is None:
+                continue
+            seen.add(exchanged_ids)
+            # one that is farther from the rows than the truth is not the same motion
+            if other.residual_rms_m < case.error:
                 other = polished(case, other)
                 waiting.append(other)
                 yield other
@@ -112,12 +115,13 @@ def _exchanged(
     catalogue: Sequence[Cause],
 ) -> CauseReading | None:
     """Return a reading with causes of some ids in place of others; None if no program can have them."""
-    dropped = [cause for cause in reading.causes if cause.id in before]
+    dropped = [cause for cause in reading.causes if cause.id in before - after]
     missing = after - _cause_ids(reading)
     other: CauseReading | None = reading.reader.without(reading, dropped)
     for cause in catalogue:
         if other is not None and cause.id in missing:
-            other = reading.reader.with_cause(other, cause)
+            groups = {part.group for part in other.causes}
+            other = None if cause.group in groups else reading.reader.with_cause(other, cause)
     if other is None or not after <= _cause_ids(other):
         return None
     return other

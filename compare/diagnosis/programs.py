@@ -62,10 +62,10 @@ class Program:
     """The numbers and choices of a program; SI units, angles in degrees.
 
     Attributes:
-        gravity_reading: how it treats the centrifugal force: ellipsoid (added to g), effective
-            (contained in g, its change along the swing kept), none (left out), no_tilt (its
-            vertical part alone), tilt (its horizontal part alone), tilt_no_sine (that part
-            without sin φ), uniform (without its change along the swing).
+        gravity_reading: how it treats the centrifugal force at the suspension: ellipsoid (added
+            to g), effective (contained in g), no_tilt (its vertical part alone), tilt (its
+            horizontal part alone), tilt_no_sine (the horizontal part without sin φ).
+        no_change: whether it leaves out the centrifugal force's change along the swing.
         coriolis: factors of the Coriolis force's Ωy and Ωz, and of both.
         coriolis_latitude: the latitude of the Coriolis force in degrees, of any size; None if it
             is that of the site.
@@ -96,6 +96,7 @@ class Program:
     vx: float
     vy: float
     gravity_reading: str = "ellipsoid"
+    no_change: bool = False
     coriolis: tuple[float, float, float] = (1.0, 1.0, 1.0)
     coriolis_latitude: float | None = None
     turned_plane: bool = False
@@ -158,7 +159,7 @@ class Program:
     @property
     def gradient(self) -> float:
         """1 if it takes the centrifugal force's change along the swing into account, else 0."""
-        return float(self.gravity_reading in ("ellipsoid", "effective", "tilt", "tilt_no_sine"))
+        return float(not self.no_change)
 
     @property
     def gradient_square(self) -> tuple[float, float, float, float]:
@@ -227,12 +228,15 @@ class Program:
         outward = self.rate**2 * self.axis_distance
         north = 0.0
         up = -self.g
-        if self.gravity_reading in ("ellipsoid", "uniform", "tilt"):
+        if self.gravity_reading in ("ellipsoid", "tilt"):
             north = -outward * math.sin(phi)
         elif self.gravity_reading == "tilt_no_sine":
             north = -outward
-        if self.gravity_reading in ("ellipsoid", "uniform", "tilt_no_sine", "no_tilt"):
+        if self.gravity_reading in ("ellipsoid", "tilt_no_sine", "no_tilt"):
             up += outward * math.cos(phi)
+        elif self.gravity_reading == "tilt" and self.kind == "sphere":
+            # nor does it have the vertical part's change, at the bob: l below the suspension
+            up += self.gradient * (self.rate * math.cos(phi)) ** 2 * self.length
         return north, up
 
     def _release_velocity(self) -> tuple[float, float]:

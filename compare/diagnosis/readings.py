@@ -34,6 +34,8 @@ PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error 
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
 GAIN = 0.99  # of the residual before it: a step with a larger one is not taken
+# causes that leave out the centrifugal force's change along the swing, or with it are one that does
+WITHOUT_CHANGE = {"no_centrifugal", "effective_gravity", "no_tilt"}
 SMALLEST = {
     "g": 1.0,
     "length": 1.0,
@@ -386,4 +388,9 @@ def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
     groups = {part.group for part in every}
     if "no_rotation" in cause_ids:
         return bool(groups & {"latitude", "frame", "coriolis", "turn"})
+    if "uniform_gravity" in cause_ids and cause_ids & WITHOUT_CHANGE:
+        return True
+    # of a turn alone, the rate at any latitude is as good
+    if {"pole", "site.rotation_rate"} <= cause_ids:
+        return True
     return "no_coriolis" in cause_ids and bool(groups & {"frame", "turn"})

@@ -27,7 +27,10 @@ FLATTENING = 1 / 298.257223563
 
 @dataclass
 class Loose:
-    """A program: its scene, the numbers and choices it uses, and the words that are true of it."""
+    """A program: its scene, the numbers and choices it uses, and the words that are true of it.
+
+    `lift` is a factor of the vertical centrifugal force; `changes` is whether that force changes along the swing.
+    """
 
     scene: Scene
     times: np.ndarray
@@ -40,6 +43,8 @@ class Loose:
     rtol: float
     model: str = "sphere"
     gravity: str = "ellipsoid"
+    lift: float = 1.0
+    changes: bool = True
     coriolis: float = 1.0
     stars: float = 0.0
     drag: float = 0.0
@@ -56,14 +61,15 @@ class Loose:
         omega = self.rate * np.array([0.0, math.cos(phi), math.sin(phi)])
         force = np.array([0.0, 0.0, -self.g]) - 2 * self.coriolis * np.cross(omega, v)
         force -= self.drag * v
-        if self.gravity != "none":
-            force -= np.cross(omega, np.cross(omega, r))
+        centrifugal = np.zeros(3)
+        if self.gravity != "none" and self.changes:
+            centrifugal -= np.cross(omega, np.cross(omega, r))
         if self.gravity == "ellipsoid":
             e2 = FLATTENING * (2 - FLATTENING)
             axis = RADIUS_M / math.sqrt(1 - e2 * math.sin(phi) ** 2) * math.cos(phi)
             outward = np.array([0.0, -math.sin(phi), math.cos(phi)])
-            force += self.rate**2 * axis * outward
-        return np.asarray(force)
+            centrifugal += self.rate**2 * axis * outward
+        return np.asarray(force + centrifugal * [1.0, 1.0, self.lift])
 
     def rates(self, _: float, state: np.ndarray) -> np.ndarray:
         """Return the derivative of a state."""
