@@ -210,9 +210,7 @@ def _unexplained_m(old: _Document, new: _Document) -> float:
     return float(sum(cause["size_m"] for cause in [*went, *came]))
 
 
-def _changes(
-    old: Version, new: Version, differences: _Differences, most_m: float
-) -> Iterator[str]:
+def _changes(old: Version, new: Version, differences: _Differences, most_m: float) -> Iterator[str]:
     """Yield what came and what went."""
     for deviation in _visible(differences.came, old.left_m, most_m):
         text = _changed(deviation, "now", differences.before)

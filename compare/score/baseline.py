@@ -196,9 +196,14 @@ def _distance(new: Score, old: Score) -> float:
 
     now = new.candidate.columns
     then = old.candidate.columns
-    names = [name for name in POSITION if name in now and name in then]
-    offsets = [now[name][here] - then[name][there] for name in names]
+    offsets = [now[name][here] - then[name][there] for name in _common_columns(new, old)]
     return float(np.linalg.norm(offsets, axis=0).max())
+
+
+def _common_columns(new: Score, old: Score) -> list[str]:
+    """Return the names of the columns of positions that two candidates have."""
+    both = new.candidate.columns.keys() & old.candidate.columns.keys()
+    return [name for name in POSITION if name in both]
 
 
 def _differ_by_rounding(
@@ -214,12 +219,9 @@ def _differ_by_rounding(
         unchanged_m: the distance in m that counts as none.
     """
     here, there = _common_rows(new, old)
-    names = [
-        name for name in POSITION if name in new.candidate.columns and name in old.candidate.columns
-    ]
-    if len(here) < 2 or not names:
+    if len(here) < 2 or not old.candidate.positions:
         return False
-    for name in names:
+    for name in _common_columns(new, old):
         offset = new.candidate.columns[name][here] - old.candidate.columns[name][there]
         rounding_now = _rounding(new, now, name)[here]
         rounding_then = _rounding(old, then, name)[there]
@@ -236,13 +238,17 @@ def _rounding(score: Score, version: Version, name: str) -> Array:
             return np.full_like(columns[name], convention["size_m"])
         if convention["id"] == "digits":
             # the convention has the rounding of the largest number of the file
-            largest = max(np.abs(columns[other]).max() for other in POSITION if other in columns)
-            with np.errstate(divide="ignore"):
-                decades = np.floor(np.log10(np.abs(columns[name]))) - math.floor(
-                    math.log10(largest)
-                )
+            positions = [columns[other] for other in POSITION if other in columns]
+            largest_decade = _decades(np.concatenate(positions)).max()
+            decades = _decades(columns[name]) - largest_decade
             return np.asarray(convention["size_m"] * 10.0**decades)
     return np.zeros_like(columns[name])
+
+
+def _decades(numbers: Array) -> Array:
+    """Return the power of ten of the first digit of each number; minus infinity for zero."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.floor(np.log10(np.abs(numbers))))
 
 
 def _differences(

@@ -250,6 +250,31 @@ def test_what_both_explanations_know_is_what_changed(
     assert found.complete is words.endswith(": "), found.text
 
 
+def test_a_change_that_few_digits_show_is_more_than_their_rounding() -> None:
+    """Six digits round z, which is 67 m, by 5e-5 m, and x of a tenth of a metre by 5e-7 m."""
+    release = {"x": "0.3", "y": "0"}
+    scene = make_scene("digits", release=release, run={"t_end": "100", "grid_step": "0.5"})
+    # at once after the release y is so small that six digits of it are many decimals
+    times = np.concatenate([[0.0, 0.01, 0.02, 0.05, 0.1, 0.2], np.linspace(0.5, 100, 200)])
+    x, y, z = trajectory(scene, times)[:, :3].T
+    jitter = np.random.default_rng(0).uniform(-1, 1, len(times))
+
+    def version(name: str, relative: float) -> Candidate:
+        columns = {"x": x * (1 + relative * jitter), "y": y, "z": z}
+        for key, column in columns.items():
+            columns[key] = np.array([float(f"{number:.6g}") for number in column])
+        return Candidate.of(name, times, columns)
+
+    def change(relative: float) -> str:
+        found = judge(version("new", relative), scene, baseline=version("old", 0.0)).since
+        assert found is not None
+        return found.text
+
+    words = "no more than the rounding of the printed numbers"
+    assert words in change(1e-7)
+    assert words not in change(1e-4)
+
+
 def test_a_loop_of_another_name_is_a_change_of_the_step(tmp_path: Path) -> None:
     """Two loops with the same step of 0.05 s, whose errors differ by half a percent."""
     scene = make_scene("loops", run={"t_end": "100", "grid_step": "0.25"})
