@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from reference import InputError
 from reference.errors import Described
@@ -39,6 +40,7 @@ _SHARE = 0.1  # of a change: what is smaller is no part of it
 # times a change: unless both versions are explained, a cause that moves the bob by more has not come with it
 _WOBBLE = 10.0
 _ROUNDED = 10.0  # times the input floor: no more than this is no change
+_Indices = npt.NDArray[np.intp]  # of rows
 _NEEDED = {"scene", "candidate", "verdict"}  # keys of a document
 _EXPECTED = "a document that `foucault score --json` wrote"
 
@@ -180,7 +182,7 @@ def _largest_until(score: Score, end_s: float) -> float:
     return float(score.errors.position[score.errors.t <= end_s].max(initial=0.0))
 
 
-def _common_rows(new: Score, old: Score) -> tuple[Array, Array]:
+def _common_rows(new: Score, old: Score) -> tuple[_Indices, _Indices]:
     """Return the indices of the rows of two candidates at the times that both have."""
     _, here, there = np.intersect1d(
         new.errors.t.round(9), old.errors.t.round(9), return_indices=True
