@@ -19,7 +19,7 @@ from .claims import hedged
 from .conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from .document import explanation_document
 from .experiments.findings import MOST_RUNS, Experiment, Experiments, possible
-from .since import Since, Version, explain_change
+from .since import NOT_SOUGHT, ROUNDING, Since, Version, explain_change, unexplained
 
 __all__ = [
     "ADDED_TWICE",
@@ -29,6 +29,8 @@ __all__ = [
     "EFFECTIVE",
     "LENGTHS_SAID",
     "MOST_RUNS",
+    "NOT_SOUGHT",
+    "ROUNDING",
     "THRESHOLDS",
     "TIMES_SAID",
     "Experiment",
@@ -43,6 +45,7 @@ __all__ = [
     "explanation_document",
     "hedged",
     "possible",
+    "unexplained",
 ]
 
 THRESHOLDS = {name: value for name, value in vars(thresholds).items() if name.isupper()}

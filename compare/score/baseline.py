@@ -13,21 +13,34 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from reference import InputError
 from reference.errors import Described
 from reference.numbers.columns import POSITION
+from reference.numbers.precision import Array
 from reference.system.documents import json_document
 
-from ..diagnosis import Since, Version, diagnose, explain_change, explanation_document
+from ..diagnosis import (
+    NOT_SOUGHT,
+    ROUNDING,
+    Since,
+    Version,
+    diagnose,
+    explain_change,
+    explanation_document,
+    unexplained,
+)
 from .document import document
 from .verdict import REFUSED, WHOLE, Score
 
 FILE = "file"  # key of a document that was read: where it was
 
 _SHARE = 0.1  # of a change: what is smaller is no part of it
-_WOBBLE = 10.0  # times a change: a cause that moves the bob by more has not come with it
+# times a change: unless both versions are explained, a cause that moves the bob by more has not come with it
+_WOBBLE = 10.0
 _ROUNDED = 10.0  # times the input floor: no more than this is no change
+_Indices = npt.NDArray[np.intp]  # of rows
 _NEEDED = {"scene", "candidate", "verdict"}  # keys of a document
 _EXPECTED = "a document that `foucault score --json` wrote"
 
@@ -130,15 +143,21 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
         *_differences(new, baseline, after_m - before_m),
         *_transit_differences(new, old, baseline["transits"], end_s),
     ]
-    is_changed = apart_m > max(new.errors.bound_m, _ROUNDED * new.input_floor_m)
+    unchanged_m = max(new.errors.bound_m, _ROUNDED * new.input_floor_m)
+    is_changed = apart_m > unchanged_m
     changes: tuple[str, ...] = ()
     left_m = None
+    remark = NOT_SOUGHT
     allowed_m = max(min(_SHARE * apart_m, new.tolerance_m), level_m)
     if is_changed and explains and new.candidate.positions:
         now = Version(_explained(new, allowed_m), after_m)
         then = Version(baseline if old is None else _explained(old, allowed_m), before_m)
-        most_m = math.inf if old is None else _WOBBLE * apart_m
+        both_explained = now.is_explained(allowed_m) and then.is_explained(allowed_m)
+        most_m = math.inf if old is None or both_explained else _WOBBLE * apart_m
         changes, left_m = explain_change(then, now, apart_m, most_m)
+        remark = unexplained(then, now)
+        if old is not None and _differ_by_rounding(new, now, old, then, unchanged_m):
+            remark = ROUNDING
     return Since(
         name=str(baseline["candidate"]),
         before_m=before_m,
@@ -149,6 +168,7 @@ def _since(new: Score, old: Score | None, baseline: Mapping[str, Any], explains:
         changes=changes,
         left_m=left_m,
         complete=left_m is not None and left_m <= allowed_m,
+        unexplained=remark,
     )
 
 
@@ -162,19 +182,75 @@ def _largest_until(score: Score, end_s: float) -> float:
     return float(score.errors.position[score.errors.t <= end_s].max(initial=0.0))
 
 
-def _distance(new: Score, old: Score) -> float:
-    """Return the largest distance in m between the rows of two candidates at the times that both have."""
+def _common_rows(new: Score, old: Score) -> tuple[_Indices, _Indices]:
+    """Return the indices of the rows of two candidates at the times that both have."""
     _, here, there = np.intersect1d(
         new.errors.t.round(9), old.errors.t.round(9), return_indices=True
     )
+    return here, there
+
+
+def _distance(new: Score, old: Score) -> float:
+    """Return the largest distance in m between the rows of two candidates at the times that both have."""
+    here, there = _common_rows(new, old)
     if len(here) < 2 or not (new.candidate.positions and old.candidate.positions):
         return abs(new.errors.max_m - old.errors.max_m)
 
     now = new.candidate.columns
     then = old.candidate.columns
-    names = [name for name in POSITION if name in now and name in then]
-    offsets = [now[name][here] - then[name][there] for name in names]
+    offsets = [now[name][here] - then[name][there] for name in _common_columns(new, old)]
     return float(np.linalg.norm(offsets, axis=0).max())
+
+
+def _common_columns(new: Score, old: Score) -> list[str]:
+    """Return the names of the columns of positions that two candidates have."""
+    both = new.candidate.columns.keys() & old.candidate.columns.keys()
+    return [name for name in POSITION if name in both]
+
+
+def _differ_by_rounding(
+    new: Score, now: Version, old: Score, then: Version, unchanged_m: float
+) -> bool:
+    """Return whether no number of two candidates differs by more than the rounding of both as they are printed.
+
+    Args:
+        new: the candidate.
+        now: what is known of its file.
+        old: the baseline.
+        then: what is known of its file.
+        unchanged_m: the distance in m that counts as none.
+    """
+    here, there = _common_rows(new, old)
+    if len(here) < 2 or not old.candidate.positions:
+        return False
+    for name in _common_columns(new, old):
+        offset = new.candidate.columns[name][here] - old.candidate.columns[name][there]
+        rounding_now = _rounding(new, now, name)[here]
+        rounding_then = _rounding(old, then, name)[there]
+        if (np.abs(offset) > rounding_now + rounding_then + unchanged_m).any():
+            return False
+    return True
+
+
+def _rounding(score: Score, version: Version, name: str) -> Array:
+    """Return half a unit of the last digit printed of each number in a column in m; zero if it has many digits."""
+    columns = score.candidate.columns
+    for convention in version.document["conventions"]:
+        if convention["id"] == "decimals":
+            return np.full_like(columns[name], convention["size_m"])
+        if convention["id"] == "digits":
+            # the convention has the rounding of the largest number of the file
+            positions = [columns[other] for other in POSITION if other in columns]
+            largest_decade = _decades(np.concatenate(positions)).max()
+            decades = _decades(columns[name]) - largest_decade
+            return np.asarray(convention["size_m"] * 10.0**decades)
+    return np.zeros_like(columns[name])
+
+
+def _decades(numbers: Array) -> Array:
+    """Return the power of ten of the first digit of each number; minus infinity for zero."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.floor(np.log10(np.abs(numbers))))
 
 
 def _differences(

@@ -116,10 +116,24 @@ def test_what_became_worse_is_said(foucault, rows):
         "it ends at t = 9.5 s, and ended at 20 s"
     ]
     unknown = judged(foucault, rows, "worse", rows / "wrong.csv")[1]["baseline"]["text"]
-    assert "what lies between them, 0.001 m, is no known mistake" in unknown
+    # with --no-diagnosis
+    not_sought = "what lies between them, 0.001 m, is not explained: its cause was not looked for"
+    assert not_sought in unknown
     lost = ("--transits", rows / "right.csv")
     # the baseline has no transits
     assert judged(foucault, rows, "wrong", rows / "wrong.csv", *lost)[0] == 0
+
+
+def test_a_clock_that_starts_late_is_what_changed(foucault, rows, tmp_path):
+    table = np.loadtxt(rows / "right.csv", delimiter=",", skiprows=1)
+    table[:, 0] += 0.01
+    late = tmp_path / "late.csv"
+    np.savetxt(late, table, delimiter=",", header="t,x,y", fmt="%.17g", comments="")
+    words = ("score", rows / "mine.toml", late, "--baseline", rows / "right.csv")
+    status, out, _ = foucault(*words)
+    change = out.splitlines()[1]
+    assert status == 1 and "its file now starts its clock at 0.01 s and not at 0: " in change
+    assert "; nothing else" in change
 
 
 def test_transits_that_moved_are_told_where_no_position_did(rows):

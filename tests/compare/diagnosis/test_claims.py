@@ -318,3 +318,64 @@ def test_a_step_that_errs_about_as_much_is_the_same() -> None:
     assert explain_change(version(1e-3), version(1.8e-3), 1e-3, math.inf)[0] == ()
     (change,) = explain_change(version(1e-3), version(2.2e-3), 1e-3, math.inf)[0]
     assert change.startswith("the step")
+
+
+def test_a_change_between_named_steps_is_not_compared_by_size() -> None:
+    from compare.diagnosis import Version, explain_change
+
+    def version(method: str, value: float | None) -> Version:
+        text = f"your program integrates with {method} at a step of 0.05 s"
+        cause = {"id": f"integrator_{method}", "text": text, "size_m": 1e-3, "value": value}
+        document = {
+            "conventions": [],
+            "causes": [cause],
+            "slip": None,
+            "corrected": {"max_error_m": 0.0},
+        }
+        return Version(document, 1e-3)
+
+    for value in (0.05, None):
+        old, new = version("leapfrog", value), version("rk2", value)
+        (change,) = explain_change(old, new, 1e-3, math.inf)[0]
+        assert change == "the step (it now integrates with rk2 at a step of 0.05 s)"
+        assert explain_change(old, old, 1e-3, math.inf)[0] == ()
+
+
+def test_a_change_that_the_old_file_may_not_tell_is_left_out() -> None:
+    """A file that does not tell whether the change along the swing is there has the shorter sentence on g."""
+    from compare.diagnosis import Version, explain_change
+
+    effective = {"id": "effective_gravity", "text": "your program takes g as effective"}
+    without_change = {"id": "no_centrifugal", "text": "your program takes g as effective, and more"}
+    other_g = {"id": "gravity_9.8", "text": "your program computes with g = 9.8 m/s²"}
+
+    def version(*causes: dict[str, str]) -> Version:
+        sized = [cause | {"size_m": 1e-3} for cause in causes]
+        document = {
+            "conventions": [],
+            "causes": sized,
+            "slip": None,
+            "corrected": {"max_error_m": 0.0},
+        }
+        return Version(document, 1e-3)
+
+    changes = explain_change(version(effective), version(without_change), 1e-3, math.inf)
+    assert changes == (("it now more",), 0.0)
+    changes = explain_change(version(effective), version(without_change, other_g), 1e-3, math.inf)
+    assert changes == (("it now computes with g = 9.8 m/s²",), None)
+
+
+def test_a_change_is_no_known_mistake_if_nothing_is_known() -> None:
+    from compare.diagnosis import Version, unexplained
+
+    def version(cause_id: str) -> Version:
+        cause = {"id": cause_id, "text": f"your program has {cause_id}", "size_m": 1e-3}
+        causes = [cause] if cause_id else []
+        return Version({"conventions": [], "causes": causes, "slip": None, "corrected": None}, 1e-3)
+
+    assert unexplained(version(""), version("")) == "is no known mistake"
+    assert unexplained(version("a"), version("a")) == "is no known mistake"
+    for doubtful in ("as_if.a", "a|b"):
+        assert "not certain" in unexplained(version(doubtful), version(""))
+        assert "not certain" in unexplained(version(""), version(doubtful))
+    assert "not certain" in unexplained(version("a"), version(""))

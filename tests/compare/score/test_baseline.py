@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from loops import LOOPS, Loop, source_of
 from mistakes import Case, case
 from places import MISTAKEN_C
 from scipy.integrate import solve_ivp
+from small_scenes import make_scene
 
 from compare.candidates.candidate import Candidate
 from compare.score.judge import judge
@@ -214,3 +216,79 @@ def test_a_clock_is_told_as_what_changed_and_no_g() -> None:
     found = judge(version(1.0, "7.3e-5"), scene, baseline=old).since
     assert found is not None and found.complete and len(found.changes) == 2
     assert any("clock" in change for change in found.changes)
+
+
+LEAVES_OUT = "leaves out the centrifugal force's change along the swing"
+EFFECTIVE = {"reading": 2.0}
+LATE = {"toffset": 0.01}
+# what the old version has, what the new one has, and the words on what changed, or on the reason that none is named
+PAIRS_IN_PARIS: list[tuple[Options, Options, str]] = [
+    ({}, LATE, "its file now starts its clock at 0.01 s and not at 0: "),
+    ({"g": 9.8}, {"g": 9.8} | LATE, "its file now starts its clock at 0.01 s and not at 0: "),
+    (EFFECTIVE, NO_REST, f"it now {LEAVES_OUT}: "),
+    (NO_REST, EFFECTIVE, f"it no longer {LEAVES_OUT}: "),
+    ({}, NO_REST, f"contains the centrifugal force, and {LEAVES_OUT}: "),
+    ({"gtimes": 1 / 1.001}, {"ltimes": 1.001}, "its cause is not certain"),
+    ({"decimals": 6}, {"decimals": 4}, "no more than the rounding of the printed numbers"),
+    ({}, {"decimals": 6}, "no more than the rounding of the printed numbers"),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "words"), PAIRS_IN_PARIS)
+def test_what_both_explanations_know_is_what_changed(
+    programs: tuple[Path, Path], before: Options, after: Options, words: str
+) -> None:
+    """Both files are explained, whatever the size of a cause beside that of the change, or it is said why none is."""
+    run = {"t_end": "600", "grid_step": "5"}
+    scene = make_scene("known", run=run).with_values(["inputs=binary64"])
+    values = {"lat": 48.846111, "x0": 0.3, "y0": 0.4, "out": 5.0, "tend": 600.0}
+    made = Case(0, scene, 16.4, np.random.default_rng(0), values)
+    old = printed(programs[0], made, before, "old")
+    new = printed(programs[0], made, after, "new")
+    found = compared(made, old, new)
+    assert words in found.text, found.text
+    assert found.complete is words.endswith(": "), found.text
+
+
+def test_a_change_that_few_digits_show_is_more_than_their_rounding() -> None:
+    """Six digits round z, which is 67 m, by 5e-5 m, and x of a tenth of a metre by 5e-7 m."""
+    release = {"x": "0.3", "y": "0"}
+    scene = make_scene("digits", release=release, run={"t_end": "100", "grid_step": "0.5"})
+    # at once after the release y is so small that six digits of it are many decimals
+    times = np.concatenate([[0.0, 0.01, 0.02, 0.05, 0.1, 0.2], np.linspace(0.5, 100, 200)])
+    x, y, z = trajectory(scene, times)[:, :3].T
+    jitter = np.random.default_rng(0).uniform(-1, 1, len(times))
+
+    def version(name: str, relative: float) -> Candidate:
+        columns = {"x": x * (1 + relative * jitter), "y": y, "z": z}
+        for key, column in columns.items():
+            columns[key] = np.array([float(f"{number:.6g}") for number in column])
+        return Candidate.of(name, times, columns)
+
+    def change(relative: float) -> str:
+        found = judge(version("new", relative), scene, baseline=version("old", 0.0)).since
+        assert found is not None
+        return found.text
+
+    words = "no more than the rounding of the printed numbers"
+    assert words in change(1e-7)
+    assert words not in change(1e-4)
+
+
+def test_a_loop_of_another_name_is_a_change_of_the_step(tmp_path: Path) -> None:
+    """Two loops with the same step of 0.05 s, whose errors differ by half a percent."""
+    scene = make_scene("loops", run={"t_end": "100", "grid_step": "0.25"})
+    values = {"x": 0.3, "y": 0.4, "vx": 0.0, "vy": 0.0, "h": 0.05, "q": 9.80665 / 67, "d": 0.0}
+    values["f"] = 2 * 7.292115e-5 * math.sin(math.radians(48.846111))
+
+    def version(name: str, loop: str) -> Candidate:
+        source = source_of("Python", LOOPS[loop][0], values, 0.25, 5, 400)
+        times, columns = Loop(name, "Python", source, scene, set(), set()).rows(tmp_path)
+        return Candidate.of(name, times, columns)
+
+    old = version("old", "kick_drift")
+    found = judge(version("new", "in_turn"), scene, baseline=old).since
+    assert found is not None
+    (change,) = found.changes
+    assert change.startswith("the step (it now integrates with semi-implicit Euler, its velocities")
+    assert found.complete
