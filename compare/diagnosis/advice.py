@@ -18,6 +18,8 @@ DO = {
     f"−Ω² q sin φ along y and Ω² q cos φ along z, where {_AXIS}.",
     "no_tilt": f"Add −Ω² q sin φ along y, where {_AXIS}.",
     "no_lift": f"Add Ω² q cos φ along z, where {_AXIS}.",
+    "centrifugal_sign": f"Reverse it: it is −Ω² q sin φ along y and Ω² q cos φ along z, where {_AXIS}.",
+    "centrifugal_double": "Add it once. A measured g has it already: then say `--set site.gravity_is=effective`.",
     "tilt_no_sine": "Multiply the part along y by sin φ.",
     "uniform_gravity": "Compute the force where the bob is and not at the suspension. The effect is small.",
     "ellipsoid_gravity": "Leave the force at the suspension out: a measured g has it. Keep its change along the swing.",

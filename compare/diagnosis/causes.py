@@ -253,6 +253,10 @@ def _gravity(right: Program) -> Iterator[Cause]:
             yield reading("tilt", "no_lift", text)
             text = "takes the horizontal centrifugal force without the sine of the latitude"
             yield reading("tilt_no_sine", "tilt_no_sine", text, RARE)
+            text = "gives the centrifugal force at the suspension the wrong sign"
+            yield reading("reversed", "centrifugal_sign", text)
+            text = "adds the centrifugal force at the suspension twice"
+            yield reading("doubled", "centrifugal_double", text)
             # of a group of its own: whatever is added at the suspension may change along the swing
             no_change = _set(no_change=True)
             yield Cause("uniform_gravity", "gravity_change", NO_CHANGE, no_change, stage="gravity")

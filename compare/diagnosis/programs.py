@@ -54,6 +54,8 @@ _GIVEN = {
     "altitude": "altitude",
     "drag": "drag",
 }
+# of the centrifugal force at the suspension, in readings that have it too often or reversed
+_FACTORS = {"reversed": -1.0, "doubled": 2.0}
 _HIGHEST = 12000.0  # m above or below the ellipsoid: no pendulum hangs farther away
 
 
@@ -64,7 +66,8 @@ class Program:
     Attributes:
         gravity_reading: how it treats the centrifugal force at the suspension: ellipsoid (added
             to g), effective (contained in g), no_tilt (its vertical part alone), tilt (its
-            horizontal part alone), tilt_no_sine (the horizontal part without sin φ).
+            horizontal part alone), tilt_no_sine (the horizontal part without sin φ), reversed (of
+            the wrong sign), doubled.
         no_change: whether it leaves out the centrifugal force's change along the swing.
         coriolis: factors of the Coriolis force's Ωy and Ωz, and of both.
         coriolis_latitude: the latitude of the Coriolis force in degrees, of any size; None if it
@@ -226,13 +229,14 @@ class Program:
         """Return the northward and the upward acceleration at the suspension in m/s²."""
         phi = math.radians(self.latitude)
         outward = self.rate**2 * self.axis_distance
+        outward *= _FACTORS.get(self.gravity_reading, 1.0)
         north = 0.0
         up = -self.g
-        if self.gravity_reading in ("ellipsoid", "tilt"):
+        if self.gravity_reading in ("ellipsoid", "tilt", *_FACTORS):
             north = -outward * math.sin(phi)
         elif self.gravity_reading == "tilt_no_sine":
             north = -outward
-        if self.gravity_reading in ("ellipsoid", "tilt_no_sine", "no_tilt"):
+        if self.gravity_reading in ("ellipsoid", "tilt_no_sine", "no_tilt", *_FACTORS):
             up += outward * math.cos(phi)
         elif self.gravity_reading == "tilt" and self.kind == "sphere":
             # nor does it have the vertical part's change, at the bob: l below the suspension
