@@ -28,6 +28,7 @@ _OFF_THE_SPHERE = (
     "does not keep |r| = l: one of its columns is wrong, its cord is a spring, "
     "or its integrator leaves the sphere"
 )
+_DOWN = "counts z downwards"
 _WRONG_Z = "prints a z that is not the height of a bob at its x and y"
 _OFF = 1e-7  # of the cord: a larger change of the distance from the suspension is reported
 _SLIGHT = 1e-9  # of the cord: with a larger change than this, heights are ignored
@@ -92,11 +93,6 @@ class _Rounding:
     noise: float
     convention: Deviation | None = None
 
-    @classmethod
-    def said(cls, convention_id: str, text: str, noise: float) -> _Rounding:
-        """Return one that is reported by a text."""
-        return cls(noise, Deviation(convention_id, text, noise))
-
 
 def digits(rows: FileRows) -> FileRows:
     """Find the rounding of the rows: half a unit of the last digit printed, in the file's unit."""
@@ -146,7 +142,8 @@ def _rounding_of_heights(values: Array) -> _Rounding | None:
     if np.diff(different).min() > _FAR_APART * unit:
         return None
     text = f"prints {decimals} decimals of z: no more than {unit / 2:g} of its unit can be judged"
-    return _Rounding.said("decimals", text, unit / 2)
+    noise = unit / 2
+    return _Rounding(noise, Deviation("decimals", text, noise))
 
 
 def _exact(values: Array) -> _Rounding:
@@ -188,7 +185,7 @@ def _few_decimals(values: Array, decimals: int) -> _Rounding | None:
     if noise < least_noise:
         return None
     text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
-    return _Rounding.said("decimals", text, noise)
+    return _Rounding(noise, Deviation("decimals", text, noise))
 
 
 def _single_precision(values: Array) -> _Rounding | None:
@@ -197,7 +194,7 @@ def _single_precision(values: Array) -> _Rounding | None:
         return None
     noise = _single_noise(values)
     text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
-    return _Rounding.said("single_precision", text, noise)
+    return _Rounding(noise, Deviation("single_precision", text, noise))
 
 
 def _few_digits(values: Array, digit_count: int | None) -> _Rounding | None:
@@ -207,7 +204,7 @@ def _few_digits(values: Array, digit_count: int | None) -> _Rounding | None:
     size = float(np.abs(values).max())
     noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - digit_count)
     text = f"prints {digit_count} digits: no more than {noise:.1g} of its unit can be judged"
-    return _Rounding.said("digits", text, noise)
+    return _Rounding(noise, Deviation("digits", text, noise))
 
 
 def _single_noise(values: Array) -> float:
@@ -257,7 +254,7 @@ def heights(rows: FileRows, length: float) -> FileRows:
     if rows.positions.shape[1] < 3:
         return rows
     if _keeps_another_cord(rows, length):
-        return _unless_coarser(rows)
+        return _unless_coarser(_upwards(rows))
     offset = _offset_of_heights(rows, length)
     if offset:
         side = "high" if offset > 0 else "low"
@@ -279,7 +276,7 @@ def heights(rows: FileRows, length: float) -> FileRows:
             return _with_constant_heights(rows, rise)
         if _are_heights(difference, rise, order, counted, 20 * rows.noise, length):
             return _with_heights(rows, order, counted, length)
-    return _with_wrong_heights(rows, length)
+    return _without_heights(rows, length)
 
 
 def _are_heights(
@@ -306,22 +303,31 @@ def _are_heights(
 
 def _counts_of_heights(length: float) -> tuple[_Heights, ...]:
     """Return the ways in which a file may count heights, that of the scene first."""
-    down = "counts z downwards"
     return (
         _Heights(1, 0.0, ""),
-        _Heights(-1, 0.0, down),
+        _Heights(-1, 0.0, _DOWN),
         _Heights(1, length, "counts z from the lowest point"),
-        _Heights(-1, length, down),
+        _Heights(-1, length, _DOWN),
     )
 
 
 def _keeps_another_cord(rows: FileRows, length: float) -> bool:
-    """Return whether the bob is below the suspension, and keeps a distance from it that is not the scene's."""
+    """Return whether the bob stays on its side of the suspension, at a distance from it that is not the scene's."""
     z = rows.positions[:, 2]
     cord = np.linalg.norm(rows.positions, axis=1)
     same = max(20 * rows.noise, _SLIGHT * length)
     keeps_cord = np.ptp(cord) <= same < np.ptp(z)
-    return bool(keeps_cord and z.max() < 0 and abs(cord.mean() - length) > same)
+    one_side = z.max() < 0 or z.min() > 0
+    return bool(keeps_cord and one_side and abs(cord.mean() - length) > same)
+
+
+def _upwards(rows: FileRows) -> FileRows:
+    """Return rows with z upwards, the bob being below the suspension."""
+    if rows.positions[0, 2] < 0:
+        return rows
+    positions = rows.positions * [1.0, 1.0, -1.0]
+    size_m = 2 * float(np.abs(positions[:, 2]).max())
+    return rows.changed(Deviation("z_down", _DOWN, size_m), positions=positions)
 
 
 def _with_constant_heights(rows: FileRows, rise: float) -> FileRows:
@@ -338,13 +344,13 @@ def wrong_heights(convention: Deviation) -> Deviation:
     return Deviation("z_wrong", _WRONG_Z, convention.size_m)
 
 
-def _with_wrong_heights(rows: FileRows, length: float) -> FileRows:
+def _without_heights(rows: FileRows, length: float) -> FileRows:
     """Return rows in which no column is that of heights without them, and say so."""
     on_sphere = _on_sphere(rows.plane, length)
     if on_sphere is None:
         return _flat(rows)
     size_m = float(np.abs(rows.positions[:, 2] - on_sphere).max())
-    return _flat(rows.changed(Deviation("z_wrong", _WRONG_Z, size_m)))
+    return _flat(rows.changed(Deviation("off_the_sphere", _OFF_THE_SPHERE, size_m)))
 
 
 def _on_sphere(plane: Array, length: float) -> Array | None:

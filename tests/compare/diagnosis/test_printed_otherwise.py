@@ -149,6 +149,12 @@ def test_a_wrong_length_is_no_other_count_of_z(length: str) -> None:
     assert [cause.id for cause in found.known] in ([], ["pendulum.length"])
 
 
+def test_another_length_is_told_beside_a_z_that_points_down(right: Columns) -> None:
+    columns = right_rows(hall("pendulum.length=20.11"), TIMES)
+    found = explained(columns | {"z": -columns["z"]})
+    assert ids(found) == ["z_down", "pendulum.length"]
+
+
 @pytest.mark.parametrize("clock", [1.002, 0.999])
 @pytest.mark.parametrize(
     ("column", "text"),

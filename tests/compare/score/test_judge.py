@@ -836,14 +836,16 @@ def test_rounding_to_single_precision_is_all_that_is_said_of_it(golden):
     rounded = {name: golden.grid[name].astype(np.float32).astype(float) for name in ("x", "y", "z")}
     said = str(judge({"t": golden.t, **rounded}, golden.scene))
     assert "Your file holds numbers in single precision" in said
-    assert "With this corrected, " in said and "No mistake known" not in said
+    assert "The rounding of its numbers explains the error." in said
 
 
-def test_metres_under_a_header_of_centimetres_are_told(golden):
+def test_metres_under_a_header_of_centimetres_are_told_and_a_right_z_is_left_alone(golden):
     columns = {name: golden.grid[name] / (1 if name == "z" else 100) for name in ("x", "y", "z")}
     said = str(judge({"t": golden.t, **columns}, golden.scene))
-    assert "Your file counts metres as centimetres.\n" in said and "With this corrected, " in said
+    assert "Your file prints x and y times 0.01.\n" in said and "With this corrected, " in said
     assert "|r| = l" not in said
+    said = str(judge({"t": golden.t, **{name: columns[name] for name in "xy"}}, golden.scene))
+    assert "Your file counts metres as centimetres.\n" in said
 
 
 def test_a_tolerance_and_an_end_may_be_any_real_number():
