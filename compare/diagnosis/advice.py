@@ -81,7 +81,7 @@ DO = {
     "linear_in_angle": "Integrate the full equations: this model leaves out that a wide swing is slower.",
 }
 HABITS = {  # of a file: ids, what is said of it, what to do
-    "decimals, digits": ("prints few digits", "Print 17 digits."),
+    "decimals, decimals_of_z, digits": ("prints few digits", "Print 17 digits."),
     "single_precision": ("holds numbers in single precision", "Compute and write in double."),
     "z_down": ("counts z downwards", "Nothing: it is converted."),
     "z_from_lowest": ("counts z from the lowest point", "Nothing: it is converted."),

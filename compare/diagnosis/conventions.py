@@ -63,9 +63,8 @@ AXES_SAID = {
 _FEW = 20  # numbers that show no rounding
 _MOST = 13  # decimals or digits: numbers with as many are not rounded
 _SHOWN = 8  # different numbers, none of which ends in a zero by accident
-_FAR_APART = (
-    10  # units of the last decimal: numbers that are all farther apart are not rounded to it
-)
+# units of the last decimal: numbers that are all farther apart are not rounded to it
+_FAR_APART = 10
 _PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
 # order of a file's columns by which its third becomes the vertical
 _VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
@@ -141,9 +140,9 @@ def _rounding_of_heights(values: Array) -> _Rounding | None:
     unit = 10.0**-decimals
     if np.diff(different).min() > _FAR_APART * unit:
         return None
-    text = f"prints {decimals} decimals of z: no more than {unit / 2:g} of its unit can be judged"
     noise = unit / 2
-    return _Rounding(noise, Deviation("decimals", text, noise))
+    text = f"prints {decimals} decimals of z: no more than {noise:g} of its unit can be judged"
+    return _Rounding(noise, Deviation("decimals_of_z", text, noise))
 
 
 def _exact(values: Array) -> _Rounding:

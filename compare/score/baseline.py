@@ -236,7 +236,7 @@ def _rounding(score: Score, version: Version, name: str) -> Array:
     """Return half a unit of the last digit printed of each number in a column in m; zero if it has many digits."""
     columns = score.candidate.columns
     for convention in version.document["conventions"]:
-        if convention["id"] == "decimals":
+        if convention["id"] == "decimals" or (convention["id"], name) == ("decimals_of_z", "z"):
             return np.full_like(columns[name], convention["size_m"])
         if convention["id"] == "digits":
             # the convention has the rounding of the largest number of the file

@@ -275,6 +275,18 @@ def test_a_change_that_few_digits_show_is_more_than_their_rounding() -> None:
     assert words not in change(1e-4)
 
 
+def test_the_rounding_of_z_is_none_of_x() -> None:
+    """z has two decimals in both versions, x and y have all."""
+    scene = make_scene("coarse_z", run={"t_end": "100", "grid_step": "0.5"})
+    times = np.linspace(0, 100, 201)
+    x, y, z = trajectory(scene, times)[:, :3].T
+    jitter = np.random.default_rng(0).uniform(-1e-4, 1e-4, len(times))
+    old = Candidate.of("old", times, {"x": x, "y": y, "z": z.round(2)})
+    new = Candidate.of("new", times, {"x": x + jitter, "y": y, "z": z.round(2)})
+    since = judge(new, scene, baseline=old).since
+    assert since is not None and "rounding" not in since.text
+
+
 def test_a_loop_of_another_name_is_a_change_of_the_step(tmp_path: Path) -> None:
     """Two loops with the same step of 0.05 s, whose errors differ by half a percent."""
     scene = make_scene("loops", run={"t_end": "100", "grid_step": "0.25"})
