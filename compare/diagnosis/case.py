@@ -154,7 +154,7 @@ class Explanation:
             yield f"{'-' if listed else BEGIN} {cause.text}: off by {cause.size_m:.3g} m"
             yield from _advised(cause)
         if any(cause.stage == AS_IF for cause in self.causes):
-            yield 'Of what it "moves like" another number, a clock, a step or another term may be the cause.'
+            yield 'Where it says "moves like", the cause may be another number, a clock, a step or another term.'
         if self.slip:
             yield self.slip
         yield from self._remaining_error()

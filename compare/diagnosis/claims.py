@@ -295,7 +295,9 @@ class _AmongRivals:
     def _least_growth(self) -> float:
         """The least factor by which the residual grows without a cause that is certain."""
         if self.best.explains:
-            return NEEDED
+            # each free number may absorb a part
+            free_numbers = 0 if self.best.is_exact else len(self.best.arbitrary_inputs)
+            return NEEDED ** (1 + free_numbers)
         if self.best.arbitrary_inputs:
             # if not even free numbers explain the rows, none of the causes in the catalogue may be as good by accident
             return CATALOGUE / CHANCE

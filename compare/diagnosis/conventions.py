@@ -68,6 +68,7 @@ _FAR_APART = 10
 _PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
 # order of a file's columns by which its third becomes the vertical
 _VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
+_CORD_LENGTHS = "cord lengths"  # which are angles in radians, roughly
 _Axes = tuple[tuple[int, int], tuple[int, int]]
 _AS_IN_SCENE: _Axes = ((0, 1), (1, 1))
 
@@ -95,14 +96,12 @@ class _Rounding:
 
 def digits(rows: FileRows) -> FileRows:
     """Find the rounding of the rows: half a unit of the last digit printed, in the file's unit."""
-    rounding = _rounding(rows.positions)
-    of_plane = _rounding(rows.plane)
+    of_plane = _rounding_of_plane(rows.plane)
+    roundings = [_rounding(rows.positions), of_plane]
     if rows.positions.shape[1] > 2:
-        of_heights = _rounding_of_heights(rows.positions[:, 2])
-        if of_heights is not None and of_heights.noise > rounding.noise:
-            rounding = of_heights
-    plane_noise = min(of_plane.noise, rounding.noise)
-    rounded = replace(rows, noise=rounding.noise, plane_noise=plane_noise)
+        roundings += _rounding_of_heights(rows.positions[:, 2])
+    rounding = max(roundings, key=lambda each: each.noise)
+    rounded = replace(rows, noise=rounding.noise, plane_noise=of_plane.noise)
     if rounding.convention is None:
         return rounded
     return rounded.changed(rounding.convention)
@@ -124,25 +123,34 @@ def _rounding(columns: Array) -> _Rounding:
     return _single_precision(values) or _few_digits(values, digit_count) or _exact(values)
 
 
-def _rounding_of_heights(values: Array) -> _Rounding | None:
-    """Return the rounding of a column that may have fewer decimals than the others; None if it shows none.
+def _rounding_of_plane(plane: Array) -> _Rounding:
+    """Return the rounding of x and y, that of the coarser one if they differ; a constant shows none."""
+    varied = [column for column in plane.T if len(np.unique(column)) >= _SHOWN]
+    return max(map(_rounding, varied or [plane]), key=lambda each: each.noise)
+
+
+def _rounding_of_heights(values: Array) -> Iterator[_Rounding]:
+    """Yield the rounding of a column that may have fewer decimals than the others, if it shows one.
 
     Few different numbers show it, since a bob rises little.
     """
     different = np.unique(values)
     if len(different) < 2:
-        return None
-    if _in_single_precision(values):
-        return _single_precision(values)
+        return
+    single = _single_precision(values)
     decimals = _count_of_decimals(values)
-    if decimals is None:
-        return None
+    if single is not None:
+        yield single
+    if single is not None or decimals is None:
+        return
     unit = 10.0**-decimals
     if np.diff(different).min() > _FAR_APART * unit:
-        return None
+        return
     noise = unit / 2
-    text = f"prints {decimals} decimals of z: no more than {noise:g} of its unit can be judged"
-    return _Rounding(noise, Deviation("decimals_of_z", text, noise))
+    text = (
+        f"prints {decimals} decimals of z: nothing finer than {noise:g} of its unit can be judged"
+    )
+    yield _Rounding(noise, Deviation("decimals_of_z", text, noise))
 
 
 def _exact(values: Array) -> _Rounding:
@@ -183,7 +191,7 @@ def _few_decimals(values: Array, decimals: int) -> _Rounding | None:
     noise = 0.5 * 10.0**-decimals
     if noise < least_noise:
         return None
-    text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
+    text = f"prints {decimals} decimals: nothing finer than {noise:g} of its unit can be judged"
     return _Rounding(noise, Deviation("decimals", text, noise))
 
 
@@ -202,7 +210,7 @@ def _few_digits(values: Array, digit_count: int | None) -> _Rounding | None:
         return None
     size = float(np.abs(values).max())
     noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - digit_count)
-    text = f"prints {digit_count} digits: no more than {noise:.1g} of its unit can be judged"
+    text = f"prints {digit_count} digits: nothing finer than {noise:.1g} of its unit can be judged"
     return _Rounding(noise, Deviation("digits", text, noise))
 
 
@@ -461,15 +469,14 @@ def axes(
     if released or not rows.starts or np.hypot(*first[:2]) == 0:
         return rows
 
+    angles = _from_angles(printed, release, length)
+    if angles is not None:
+        return angles
     ways = [*AXES_SAID] if rename else [_AS_IN_SCENE]
     for row, unit, way in itertools.product((first, last), _units_of_length(length), ways):
         placed = _placed(row, unit, way)
         if _is_release(placed, release, rows.plane_noise / unit.per_metre):
             return _renamed(_in_metres(rows, printed, unit, length), *way)
-    angles = _from_angles(printed, release, length)
-    if angles is not None:
-        return angles
-
     distance = np.hypot(*release[:2])
     for unit, way in _rough_ways(first, release, length, ways):
         placed = _placed(first, unit, way)
@@ -496,8 +503,8 @@ def _rough_ways(
         ways: axes that it may have.
     """
     for unit in _units_of_length(length):
-        # in a unit of about a metre, such as a cord of a metre, the release alone may be off
-        if abs(unit.per_metre - 1) >= 3 * ROUGHLY:
+        # in a unit of about a metre the release alone may be off; and cord lengths are angles, roughly
+        if abs(unit.per_metre - 1) >= 3 * ROUGHLY and unit.per_metre != 1 / length:
             yield unit, _AS_IN_SCENE
     # a release that is nearly right may have the right axes
     distance = np.hypot(*release[:2])
@@ -508,23 +515,23 @@ def _rough_ways(
 
 
 def _from_angles(printed: FileRows, release: Array, length: float) -> FileRows | None:
-    """Return rows that give angles of the cord as positions in m; None if they do not."""
+    """Return rows that give angles of the cord as positions in m; None if they do not, or give cord lengths rather."""
     first = printed.positions[0]
     distance = float(np.hypot(*release[:2]))
-    # the angle of each coordinate by itself, or that of the cord along the direction of the bob
-    separate = np.arcsin(np.clip(release[:2] / length, -1, 1))
+    # the angle of each coordinate by itself, that of the cord's projection, or that of the cord towards the bob
     direction = release[:2] / max(distance, 1e-300)
-    polar = direction * math.asin(min(1.0, distance / length))
+    ways = {
+        "separate": np.arcsin(np.clip(release[:2] / length, -1, 1)),
+        "projected": np.arctan2(release[:2], -release[2]),
+        "polar": direction * math.asin(min(1.0, distance / length)),
+        _CORD_LENGTHS: release[:2] / length,
+    }
     for unit, size in (("degrees", 180 / math.pi), ("radians", 1.0)):
-        for expected in (separate, polar):
-            near = _NEAR * float(np.abs(expected).max()) + 2 * printed.plane_noise / size
-            if not np.abs(first[:2] / size - expected).max() <= near:
-                continue
-            angles = printed.plane / size
-            plane = length * np.sin(angles)
-            if expected is polar:
-                cord_angle = np.hypot(angles[:, 0], angles[:, 1])
-                plane = length * angles * sinc(cord_angle)[:, None]
+        offs = {way: np.abs(first[:2] / size - ways[way]).max() for way in ways}
+        way = min(offs, key=lambda each: offs[each])
+        near = _NEAR * float(np.abs(ways[way]).max()) + 2 * printed.plane_noise / size
+        if offs[way] <= near and way != _CORD_LENGTHS:
+            plane = _plane_of_angles(printed.plane / size, way, length)
             text = f"gives x and y as angles of the cord in {unit}"
             convention = Deviation("angles", text, float(np.abs(first[:2]).max()))
             plane_noise = printed.plane_noise / size * length
@@ -536,6 +543,16 @@ def _from_angles(printed: FileRows, release: Array, length: float) -> FileRows |
             )
             return heights(rows, length)
     return None
+
+
+def _plane_of_angles(angles: Array, way: str, length: float) -> Array:
+    """Return x and y in m of angles of the cord in rad, counted in one of the ways of `_from_angles`."""
+    if way == "separate":
+        return np.asarray(length * np.sin(angles))
+    if way == "polar":
+        return np.asarray(length * angles * sinc(np.hypot(*angles.T))[:, None])
+    slopes = np.tan(angles)
+    return np.asarray(length * slopes / np.sqrt(1 + (slopes**2).sum(axis=1))[:, None])
 
 
 def _in_metres(rows: FileRows, printed: FileRows, unit: _UnitOfLength, length: float) -> FileRows:

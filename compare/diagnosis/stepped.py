@@ -25,6 +25,7 @@ from reference.numbers.precision import Array
 from ..candidates.candidate import Deviation
 from ..observed.least_squares import best_change
 from .case import AS_IF, Explanation, FileCase, largest, rms
+from .causes import PHASE
 from .claims import explanation_of, graded, hedged, shows_steps, with_alternative_steps
 from .families import fit_pendulum
 from .fitted import polished, readings_of
@@ -278,9 +279,11 @@ def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation
     )
     if step is None:
         return None
+    causes = explanation.causes
     if not shows_steps(best):
         step = hedged(step)
-    causes = (*explanation.causes, step)
+        causes = tuple(hedged(cause) if cause.id in PHASE else cause for cause in causes)
+    causes = (*causes, step)
     return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
 
 

@@ -271,7 +271,7 @@ function isLikelier(clock, gravity, { resolution }) {
 // What the rows themselves show, as mistakesIn returns it: maps of columns, the other meaning of g, a clock.
 function observed(columns, judged, truth, allowed) {
   const fileCase = observedCase(columns, judged, truth, allowed);
-  const unjudged = `no more than ${shortNumber(fileCase.noise, 1)} of its unit can be judged`;
+  const unjudged = `nothing finer than ${shortNumber(fileCase.noise, 1)} of its unit can be judged`;
   const rounded = fileCase.noise > allowed ? [`Your file prints ${fileCase.decimals} decimals: ${unjudged}.`] : [];
   const maps = observation(fileCase, truth);
   if (maps) {

@@ -29,14 +29,20 @@ def explained(rtol: float, true: set[str], **fields: Any) -> Told:
     return told(scene, times, made.rows(), 2e-7)
 
 
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
-def test_the_centrifugal_force_is_told_beside_a_step_error(rtol: float) -> None:
+def test_the_centrifugal_force_is_told_beside_a_step_error() -> None:
     """Its horizontal part moves the bob's rest position, which no drift does."""
-    found = explained(rtol, {"no_centrifugal"}, gravity="none")
+    found = explained(1e-6, {"no_centrifugal"}, gravity="none")
     words = found.words | found.alternatives
     assert words & {"no_centrifugal", "effective_gravity"}
     assert "integrator_loose" in words
     assert not words & LIKE_A_STEP
+
+
+def test_where_a_coarse_step_error_leaves_too_much_the_motion_is_merely_like_that() -> None:
+    found = explained(1e-4, {"no_centrifugal"}, gravity="none")
+    assert found.words == {"integrator_loose"} and not found.alternatives
+    stages = {cause.id: cause.stage for cause in found.explanation.causes}
+    assert stages["as_if.effective_gravity"] == "as_if"
 
 
 def test_a_coriolis_force_of_the_wrong_sign_is_told_beside_a_step_error() -> None:

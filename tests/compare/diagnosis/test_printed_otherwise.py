@@ -102,6 +102,14 @@ def test_a_z_of_fewer_decimals_is_rounded(right: Columns) -> None:
     assert ROUNDED in found.lines()
 
 
+def test_x_and_y_of_fewer_decimals_than_z_are_rounded(right: Columns) -> None:
+    found = explained(
+        {name: printed("%.3f", right[name]) for name in "xy"} | {"z": printed("%.9f", right["z"])}
+    )
+    assert ids(found) == ["decimals"] and found.conventions[0].text.startswith("prints 3 decimals")
+    assert ROUNDED in found.lines()
+
+
 def test_a_z_that_rounding_makes_a_constant_may_have_too_few_digits(right: Columns) -> None:
     found = explained(right | {"z": printed("%.1f", right["z"])})
     assert ids(found) == ["column_constant"]
@@ -133,9 +141,16 @@ def test_heights_from_the_floor_are_found_in_another_unit_too(right: Columns) ->
 @pytest.mark.parametrize("unit", ["radians", "degrees"])
 def test_angles_are_no_cord_lengths_and_leave_z_right(right: Columns, unit: str) -> None:
     size = 180 / math.pi if unit == "degrees" else 1.0
-    angles = {name: size * np.arcsin(right[name] / LENGTH) for name in "xy"}
-    for columns in (angles, angles | {"z": right["z"]}):
+    separate = {name: size * np.arcsin(right[name] / LENGTH) for name in "xy"}
+    projected = {name: size * np.arctan2(right[name], -right["z"]) for name in "xy"}
+    for columns in (
+        separate,
+        separate | {"z": right["z"]},
+        projected,
+        projected | {"z": right["z"]},
+    ):
         found = explained(columns)
+        assert found.corrected_m < 1e-9
         assert [part.text for part in found.conventions] == [
             f"gives x and y as angles of the cord in {unit}"
         ]
