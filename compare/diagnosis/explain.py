@@ -44,6 +44,7 @@ from .programs import Program, SphericalPendulum
 from .runaways import falls, growth
 from .slips import of_slip
 from .stepped import of_loops, of_steps
+from .thresholds import NEEDED
 
 RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))
 # Conventions that are no facts of the printed numbers: the residual without them decides. A unit of time is not among
@@ -285,7 +286,8 @@ def _with_best_conventions(file: _File, rows: FileRows) -> tuple[Explanation, Fi
         explanation = file.explained(alternative)
         mirrored = any(map(_is_mirrored, explanation.causes))
         agrees = explanation.corrected_m <= file.allowed_m
-        if agrees and not mirrored and explanation.score < best.score:
+        leaves_more = explanation.residual_rms_m >= NEEDED * best.residual_rms_m
+        if agrees and not mirrored and not leaves_more and explanation.score < best.score:
             best = explanation
             rows = alternative
     return best, rows

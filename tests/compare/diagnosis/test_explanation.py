@@ -266,6 +266,7 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         # x and y in each other's place, which a swapped release and Ω's sign make as well, and leave less
         pytest.param(81001, 94, marks=LONG),
         (81001, 270),
+        (12582, 141),
         # a rate that is rounded, without which the file agrees as well
         pytest.param(84004, 152, marks=LONG),
         # beside a step error of no name, another g looks like a height of the site or a rotation rate
