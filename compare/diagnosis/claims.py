@@ -113,8 +113,11 @@ def unnamed_step_error(size_m: float, stage: str = "integrator") -> Deviation:
 def shows_steps(best: Hypothesis) -> bool:
     """Return whether the length of a step may be known beside a hypothesis.
 
-    A step changes the phase, and so does an arbitrary g, length or clock: each absorbs a part of the other.
+    A step changes the phase, and so does an arbitrary g, length or clock: each absorbs a part of the other. On the
+    sphere nothing is left then only if both are right; a linear motion has one frequency, which both may make.
     """
+    if best.reading.program.kind == "sphere" and best.is_exact:
+        return True
     return all(cause.id not in PHASE for cause in best.arbitrary_inputs)
 
 
