@@ -413,8 +413,14 @@ def _without_name(alternative: Alternative) -> Alternative:
 
 
 def _without_longer_forms(alternatives: Sequence[Alternative]) -> list[Alternative]:
-    """Return alternatives without longer forms of another one, whose text begins with the other's: that is enough."""
-    by_text = {alternative.text: alternative for alternative in alternatives if alternative.text}
+    """Return different alternatives without longer forms of another, whose text begins with the other's.
+
+    Of several with the same causes the first is enough: their fitted numbers hardly differ.
+    """
+    by_ids: dict[str, Alternative] = {}
+    for alternative in alternatives:
+        by_ids.setdefault(alternative.ids, alternative)
+    by_text = {alternative.text: alternative for alternative in by_ids.values() if alternative.text}
 
     def is_longer_form(text: str) -> bool:
         return any(text.startswith(other) and text != other for other in by_text)
