@@ -101,10 +101,9 @@ def digits(rows: FileRows) -> FileRows:
     if rows.positions.shape[1] > 2:
         roundings += _rounding_of_heights(rows.positions[:, 2])
     rounding = max(roundings, key=lambda each: each.noise)
-    rounded = replace(rows, noise=rounding.noise, plane_noise=of_plane.noise)
     if rounding.convention is None:
-        return rounded
-    return rounded.changed(rounding.convention)
+        return replace(rows, noise=rounding.noise, plane_noise=rounding.noise)
+    return rows.changed(rounding.convention, noise=rounding.noise, plane_noise=of_plane.noise)
 
 
 def _rounding(columns: Array) -> _Rounding:
