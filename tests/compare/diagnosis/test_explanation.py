@@ -312,7 +312,8 @@ def test_an_either_names_each_alternative_once(mistaken: Path) -> None:
     made = case(13, seed=20)
     explanation = made.told(*made.rows(mistaken)).explanation
     (either,) = [cause.id.split("|") for cause in explanation.causes if "|" in cause.id]
-    assert sorted(either) == ["integrator_loose", "pendulum.length", "site.gravity"]
+    # z shows that the length is right
+    assert sorted(either) == ["integrator_loose", "site.gravity"]
 
 
 def test_mistakes_corrected_as_told_end_at_agreement(
