@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 from ..scenes.inputs import Inputs
 
+_RATE = Fraction("7.292115e-5")  # rad/s
 _EQUATOR = 9.7803267715  # m/s²
 _POLE_EXCESS = 0.001931851353
 _ECCENTRICITY_SQUARED = 0.00669438002290
@@ -28,6 +30,7 @@ def is_on_earth(inputs: Inputs) -> bool:
     numbers = inputs.by_name
     if not numbers["site.gravity"]:
         return False
-    radius = float(numbers["site.equatorial_radius"]) / 6_378_137
-    rate = float(numbers["site.rotation_rate"]) / 7.292115e-5
+    # exactly, since numbers may be too large for a double
+    radius = numbers["site.equatorial_radius"] / 6_378_137
+    rate = numbers["site.rotation_rate"] / _RATE
     return abs(radius - 1) < 0.01 and abs(rate - 1) < 0.01

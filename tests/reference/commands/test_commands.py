@@ -189,6 +189,12 @@ def test_a_motion_whose_first_step_is_too_short_for_doubles_has_no_period(foucau
     assert (status, "no period The engine stopped" in unwrapped(out)) == (0, True)
 
 
+def test_show_of_numbers_that_are_too_large_for_a_double_ends_without_a_traceback(foucault):
+    for change in ("site.equatorial_radius=1e309", "site.rotation_rate=1e309"):
+        status, out, err = foucault("show", "paris", "--set", change)
+        assert status in (0, 2), (out, err)
+
+
 def test_show_equations_says_what_was_left_out_and_why(foucault):
     out = unwrapped(foucault("show", "pole", "--equations")[1])
     assert "the latitude is a pole" in out
