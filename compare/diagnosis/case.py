@@ -20,11 +20,10 @@ from .thresholds import FINEST, RIVAL, ROUNDED
 _SLOWEST = 1e-6  # rad/s: used as the scale of the rotation rate where the scene has none
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 CONVENTION = 0.3  # decades that a convention, or a price of one, has to explain
-# conventions that a model may go with
-HARMLESS = ("z_constant", "decimals", "decimals_of_z", "digits", "single_precision")
+ROUNDING = ("decimals", "decimals_of_z", "digits", "single_precision")
+HARMLESS = ("z_constant", *ROUNDING)  # conventions that a model may go with
 WITHOUT_HEIGHTS = ("off_the_sphere", "z_wrong")  # conventions whose heights are left out
 UNCORRECTED = (*HARMLESS, *WITHOUT_HEIGHTS)  # conventions of which nothing is put right
-ROUNDING = ("decimals", "decimals_of_z", "digits", "single_precision")
 # stage of a cause that is not certain: the motion is like that
 AS_IF = "as_if"
 EITHER = "either"  # stage of several causes of which one is true: the file does not tell which

@@ -158,12 +158,12 @@ def _exact(values: Array) -> _Rounding:
 
 
 def _count_of_decimals(values: Array) -> int | None:
-    """Return how many decimals numbers have at most; None if many."""
+    """Return the largest number of decimals; None if there are too many to be a rounding."""
     return next((n for n in range(_MOST) if _same(np.round(values, n), values)), None)
 
 
 def _count_of_digits(values: Array) -> int | None:
-    """Return how many significant digits numbers have at most; None if many."""
+    """Return the largest number of significant digits; None if there are too many to be a rounding."""
     some = values[:_FEW]
     for count in range(3, _MOST):
         if _same(_with_digits(some, count), some) and _same(_with_digits(values, count), values):
@@ -172,9 +172,9 @@ def _count_of_digits(values: Array) -> int | None:
 
 
 def _are_decimals(values: Array, decimals: int, digit_count: int | None) -> bool:
-    """Return whether numbers have so many decimals, and not so many digits.
+    """Return whether numbers are rounded to decimals, and not to significant digits.
 
-    `%g` prints small numbers with many decimals, and large ones with few.
+    `%g` prints small numbers with many decimals and large ones with few.
     """
     if digit_count is None:
         return True
@@ -183,7 +183,7 @@ def _are_decimals(values: Array, decimals: int, digit_count: int | None) -> bool
 
 
 def _few_decimals(values: Array, decimals: int) -> _Rounding | None:
-    """Return the rounding to some decimals; None if their precision has no more than these."""
+    """Return the rounding to decimals; None if the precision of the numbers is no better."""
     least_noise = 1e-12 * float(np.abs(values).max())
     if _in_single_precision(values):
         least_noise = _single_noise(values)
@@ -293,10 +293,10 @@ def _are_heights(
     rounding: float,
     length: float,
 ) -> bool:
-    """Return whether a column is that of heights, by how far it is from those of a bob on the sphere.
+    """Return whether a column holds heights, by its difference from the heights of a bob on the sphere.
 
-    What is printed as in the scene may be far from them. Another count of z has to be near them, and another column
-    has to rise and fall as they do.
+    A z as in the scene may differ by any amount. A z counted otherwise has to be near them, and another column has to
+    rise and fall with them.
     """
     if order != _VERTICALS[0]:
         return bool(np.ptp(difference) <= _SAME_RISE * rise + rounding)
@@ -337,7 +337,7 @@ def _upwards(rows: FileRows) -> FileRows:
 
 
 def _with_constant_heights(rows: FileRows, rise: float) -> FileRows:
-    """Return rows whose height is a constant without it, which is reported unless rounding hides their rise in m."""
+    """Return rows without their constant height. It is reported, unless rounding hides the rise in m."""
     if rise <= 2 * rows.noise:
         return _flat(rows)
     return _flat(rows.changed(Deviation("z_constant", _FLAT)))
@@ -351,7 +351,7 @@ def wrong_heights(convention: Deviation) -> Deviation:
 
 
 def _without_heights(rows: FileRows, length: float) -> FileRows:
-    """Return rows in which no column is that of heights without them, and say so."""
+    """Return rows without heights, and report that no column holds them."""
     on_sphere = _on_sphere(rows.plane, length)
     if on_sphere is None:
         return _flat(rows)
@@ -514,7 +514,7 @@ def _rough_ways(
 
 
 def _from_angles(printed: FileRows, release: Array, length: float) -> FileRows | None:
-    """Return rows that give angles of the cord as positions in m; None if they do not, or give cord lengths rather."""
+    """Return positions in m of rows that give angles of the cord; None if they do not, or cord lengths fit better."""
     first = printed.positions[0]
     distance = float(np.hypot(*release[:2]))
     # the angle of each coordinate by itself, that of the cord's projection, or that of the cord towards the bob

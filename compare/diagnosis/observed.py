@@ -445,10 +445,10 @@ def of_observation(case: FileCase) -> Explanation | None:
 
 
 def of_evident_columns(case: FileCase) -> Explanation | None:
-    """Return the explanation that a column is a constant or a copy in the file itself; None if none is.
+    """Return the explanation that the file itself shows a constant or copied column; None if it shows none.
 
-    Its first row is not the release, as those of the other columns are; so no motion from there is like that, whatever
-    made the others. The residual is that of the others.
+    The first row of that column is wrong, while the other columns start at the release, so no motion from the release
+    can have made it. The residual is that of the other columns.
 
     The case has the rows as they are printed.
     """

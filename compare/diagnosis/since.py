@@ -135,7 +135,7 @@ class Version:
 
 @dataclass(frozen=True)
 class _Differences:
-    """What only one of two versions has.
+    """The certain findings that two versions do not share.
 
     Attributes:
         came: of the new one; a number that changed has come.
@@ -260,7 +260,7 @@ def _changed(deviation: _Document, when: str, others: Sequence[_Document]) -> st
 
 
 def _shorter_form(deviation: _Document, others: Sequence[_Document]) -> str:
-    """Return the text of another deviation that says the first part of this one; empty if there is none."""
+    """Return the text of the deviation that this one extends; empty if there is none."""
     shorter = (str(other["text"]) for other in others if _says_as_much(deviation, other))
     return next(shorter, "")
 
