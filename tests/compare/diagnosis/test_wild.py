@@ -13,7 +13,7 @@ from compare import Candidate, judge
 from reference import load_scene
 
 STEPS_S = {"w04": 0.3, "w06": 1.0, "w11": 1 / 60, "w25": 0.1}
-ENOUGH = 0.85  # of the true causes, that are certain or one of several
+ENOUGH = 0.8  # of the true causes, that are certain or one of several
 ONE_OF_SEVERAL = 0.3  # of these, at most
 # the others under --long
 ALWAYS = ("w01", "w04", "w06", "w18", "w24", "w25", "w27", "w30")
