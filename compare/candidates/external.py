@@ -265,13 +265,18 @@ def _end_of(
     It is looked at often enough to tell its wall-clock time to 2 %, or to 20 ms.
 
     Raises:
-        InputError: it exceeds its time or its output, and has to be killed.
+        InputError: it exceeds its time, and has to be killed, or its output.
     """
     start = time.monotonic()
     while True:
         ended, status, usage = os.wait4(process.pid, os.WNOHANG)
         if ended:
             process.returncode = os.waitstatus_to_exitcode(status)
+        if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
+            expected = f"at most {MAX_BYTES} bytes of output"
+            reason = f"it wrote more than {MAX_BYTES} bytes"
+            raise ProgramError(shlex.join(words), expected, reason, _tail(errors))
+        if ended:
             return usage
         waited = time.monotonic() - start
         if waited > timeout_s:
@@ -279,10 +284,6 @@ def _end_of(
             expected = f"a program that ends {within}"
             reason = f"it did not end {within}"
             raise OutOfTimeError(shlex.join(words), expected, reason, _tail(errors))
-        if max(os.fstat(stream.fileno()).st_size for stream in (output, errors)) > MAX_BYTES:
-            expected = f"at most {MAX_BYTES} bytes of output"
-            reason = f"it wrote more than {MAX_BYTES} bytes"
-            raise ProgramError(shlex.join(words), expected, reason, _tail(errors))
         time.sleep(min(0.02, waited / 50))
 
 

@@ -234,15 +234,7 @@ def test_too_much_output_ends_the_program(stream):
         run_program(python(TOO_MUCH.format(stream=stream, then=60)))
 
 
-def test_a_program_may_end_just_before_it_is_killed(monkeypatch):
-    looked = os.wait4
-
-    def wait4(pid, options):
-        seen = looked(pid, options)
-        time.sleep(0.5)  # meanwhile it has ended
-        return seen
-
-    monkeypatch.setattr(os, "wait4", wait4)
+def test_too_much_output_counts_of_a_program_that_has_ended():
     with pytest.raises(InputError, match="bytes of output"):
         run_program(python(TOO_MUCH.format(stream=1, then=0)))
 
