@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from .case import FileCase
 from .phasors import METHODS
-from .programs import Program
+from .programs import EFFECTIVE_G, WHOLE, Program
 
 NAMED = 0.3  # decades by which a named cause has to lower the residual, to be believed
 RARE = 0.5  # one that is met less often
@@ -50,6 +50,21 @@ EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal fo
 TWICE = "to a g that contains it already (--set site.gravity_is=ellipsoid)"
 ADDED_TWICE = f"adds the centrifugal force {TWICE}"
 NO_CHANGE = "leaves out the centrifugal force's change along the swing"
+# id, text, factors northward and upward, and decades by which it has to lower the residual
+_WRONG_CENTRIFUGAL = (
+    (
+        "centrifugal_sign",
+        "gives the centrifugal force at the suspension the wrong sign",
+        -1.0,
+        -1.0,
+        NAMED,
+    ),
+    ("centrifugal_double", "adds the centrifugal force at the suspension twice", 2.0, 2.0, NAMED),
+    ("tilt_sign", "gives the horizontal centrifugal force the wrong sign", -1.0, 1.0, RARE),
+    ("tilt_double", "adds the horizontal centrifugal force twice", 2.0, 1.0, RARE),
+    ("lift_sign", "gives the vertical centrifugal force the wrong sign", 1.0, -1.0, RARE),
+    ("lift_double", "adds the vertical centrifugal force twice", 1.0, 2.0, RARE),
+)
 # of many clocks that are off by this factor: it may have another origin
 LINSPACE = "as from a linspace that counts its ends wrongly"
 CLOCK = "has a clock that runs {value} times as fast as its motion: divide its times by that"
@@ -80,10 +95,16 @@ _SAME_MOTION = (
     ("site.gravity", "pendulum.length"),
     # the vertical centrifugal force makes g smaller
     ("site.gravity", "no_lift"),
+    ("site.gravity", "lift_sign"),
+    ("site.gravity", "lift_double"),
+    ("effective_gravity site.gravity", "no_tilt"),
+    ("no_centrifugal site.gravity", "no_tilt"),
     # the turn of the plane is Ω sin φ, whatever makes it
     ("site.latitude", "site.rotation_rate"),
     ("site.latitude", "solar_day"),
+    ("site.latitude", "hemisphere"),
     ("hemisphere", "coriolis_sign"),
+    ("hemisphere", "coriolis_sign frame_x_west"),
     ("hemisphere", "turned_plane_sign"),
     ("coriolis_sign", "turned_plane_sign"),
     ("hemisphere inertial_rest", "turned_plane_sign"),
@@ -237,37 +258,50 @@ def normal_gravities(latitude: float) -> tuple[float, ...]:
 
 
 def _gravity(right: Program) -> Iterator[Cause]:
-    def reading(name: str, cause_id: str, text: str, cost: float = NAMED, **fields: bool) -> Cause:
-        change = _set(gravity_reading=name, **fields)
+    def reading(
+        cause_id: str,
+        text: str,
+        north: float,
+        up: float,
+        cost: float = NAMED,
+        no_change: bool = False,
+    ) -> Cause:
+        change = _set(suspension=(north, up), no_change=no_change)
         return Cause(cause_id, "gravity", text, change, cost, stage="gravity")
 
-    ellipsoid = right.gravity_reading == "ellipsoid"
+    ellipsoid = right.suspension == WHOLE
     if right.rate:
         if ellipsoid and right.radius:
             text = f"{EFFECTIVE}, and {NO_CHANGE}"
-            yield reading("effective", "no_centrifugal", text, 0.2, no_change=True)
-            yield reading("effective", "effective_gravity", EFFECTIVE, 0.2)
+            yield reading("no_centrifugal", text, 0.0, 0.0, 0.2, no_change=True)
+            yield reading("effective_gravity", EFFECTIVE, 0.0, 0.0, 0.2)
             text = "leaves out the horizontal centrifugal force but keeps the vertical one"
-            yield reading("no_tilt", "no_tilt", text, no_change=True)
+            yield reading("no_tilt", text, 0.0, 1.0)
+            text = f"{text}, and {NO_CHANGE}"
+            yield reading("no_tilt", text, 0.0, 1.0, no_change=True)
             text = "keeps the horizontal centrifugal force but leaves out the vertical one"
-            yield reading("tilt", "no_lift", text)
+            yield reading("no_lift", text, 1.0, 0.0)
+            # nor the vertical part at the bob, l below the suspension
+            below = right.length * math.cos(math.radians(right.latitude)) / right.axis_distance
+            yield reading("no_lift", text, 1.0, below)
             text = "takes the horizontal centrifugal force without the sine of the latitude"
-            yield reading("tilt_no_sine", "tilt_no_sine", text, RARE)
-            text = "gives the centrifugal force at the suspension the wrong sign"
-            yield reading("reversed", "centrifugal_sign", text)
-            text = "adds the centrifugal force at the suspension twice"
-            yield reading("doubled", "centrifugal_double", text)
+            sine = math.sin(math.radians(right.latitude))
+            if sine:
+                yield reading("tilt_no_sine", text, 1 / sine, 1.0, RARE)
+            for cause_id, text, north, up, cost in _WRONG_CENTRIFUGAL:
+                yield reading(cause_id, text, north, up, cost)
             # of a group of its own: whatever is added at the suspension may change along the swing
             no_change = _set(no_change=True)
             yield Cause("uniform_gravity", "gravity_change", NO_CHANGE, no_change, stage="gravity")
         else:
-            whole = right.gravity_reading != "effective"
-            text = "leaves out the centrifugal force" if whole else NO_CHANGE
-            yield reading("effective", "no_centrifugal", text, 0.2, no_change=True)
-            if right.gravity_reading == "effective":
-                yield reading("ellipsoid", "ellipsoid_gravity", ADDED_TWICE)
+            text = (
+                NO_CHANGE if right.suspension == EFFECTIVE_G else "leaves out the centrifugal force"
+            )
+            yield reading("no_centrifugal", text, 0.0, 0.0, 0.2, no_change=True)
+            if right.suspension == EFFECTIVE_G:
+                yield reading("ellipsoid_gravity", ADDED_TWICE, 1.0, 1.0)
                 text = f"adds the centrifugal force, on a sphere of 6371000 m, {TWICE}"
-                on_sphere = _set(gravity_reading="ellipsoid", flattening=0.0, radius=MEAN_RADIUS)
+                on_sphere = _set(suspension=WHOLE, flattening=0.0, radius=MEAN_RADIUS)
                 yield Cause("ellipsoid_gravity", "gravity", text, on_sphere, RARE, stage="gravity")
     if right.radius:
         text = (

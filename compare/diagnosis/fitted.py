@@ -10,7 +10,7 @@ from ..candidates.candidate import Deviation
 from .case import FileCase, NamedModel, largest, rms
 from .causes import DRIFT, LOOSE, SAME_MOTIONS, Cause, causes_of
 from .families import FamilyFit, fits_of
-from .programs import Program
+from .programs import EFFECTIVE_G, Program
 from .readings import CauseReading, Reader, adjusted
 from .thresholds import RIVAL
 
@@ -312,7 +312,7 @@ def model_of(
     if not cause_ids or any(cause_id not in TITLES for cause_id in cause_ids):
         return None
     titles = dict(TITLES)
-    if right.gravity_reading == "effective":
+    if right.suspension == EFFECTIVE_G:
         titles["no_centrifugal"] = TITLES["uniform_gravity"]
     text = ", ".join(titles[cause_id] for cause_id in cause_ids)
     return NamedModel("+".join(cause_ids), text, exact, costs)

@@ -54,8 +54,9 @@ _GIVEN = {
     "altitude": "altitude",
     "drag": "drag",
 }
-# of the centrifugal force at the suspension, in readings that have it too often or reversed
-_FACTORS = {"reversed": -1.0, "doubled": 2.0}
+# factors of the centrifugal force at the suspension, northward and upward
+WHOLE = (1.0, 1.0)
+EFFECTIVE_G = (0.0, 0.0)
 _HIGHEST = 12000.0  # m above or below the ellipsoid: no pendulum hangs farther away
 
 
@@ -64,10 +65,8 @@ class Program:
     """The numbers and choices of a program; SI units, angles in degrees.
 
     Attributes:
-        gravity_reading: how it treats the centrifugal force at the suspension: ellipsoid (added
-            to g), effective (contained in g), no_tilt (its vertical part alone), tilt (its
-            horizontal part alone), tilt_no_sine (the horizontal part without sin φ), reversed (of
-            the wrong sign), doubled.
+        suspension: factors of the northward and of the upward part of the centrifugal force at the
+            suspension: 0 and 0 for an effective g, which contains both.
         no_change: whether it leaves out the centrifugal force's change along the swing.
         coriolis: factors of the Coriolis force's Ωy and Ωz, and of both.
         coriolis_latitude: the latitude of the Coriolis force in degrees, of any size; None if it
@@ -98,7 +97,7 @@ class Program:
     y: float
     vx: float
     vy: float
-    gravity_reading: str = "ellipsoid"
+    suspension: tuple[float, float] = WHOLE
     no_change: bool = False
     coriolis: tuple[float, float, float] = (1.0, 1.0, 1.0)
     coriolis_latitude: float | None = None
@@ -131,7 +130,7 @@ class Program:
             y=y,
             vx=vx,
             vy=vy,
-            gravity_reading=inputs.gravity_is,
+            suspension=WHOLE if inputs.gravity_is == "ellipsoid" else EFFECTIVE_G,
             nominal_rate=numbers["rate"],
         )
 
@@ -229,18 +228,9 @@ class Program:
         """Return the northward and the upward acceleration at the suspension in m/s²."""
         phi = math.radians(self.latitude)
         outward = self.rate**2 * self.axis_distance
-        outward *= _FACTORS.get(self.gravity_reading, 1.0)
-        north = 0.0
-        up = -self.g
-        if self.gravity_reading in ("ellipsoid", "tilt", *_FACTORS):
-            north = -outward * math.sin(phi)
-        elif self.gravity_reading == "tilt_no_sine":
-            north = -outward
-        if self.gravity_reading in ("ellipsoid", "tilt_no_sine", "no_tilt", *_FACTORS):
-            up += outward * math.cos(phi)
-        elif self.gravity_reading == "tilt" and self.kind == "sphere":
-            # nor does it have the vertical part's change, at the bob: l below the suspension
-            up += self.gradient * (self.rate * math.cos(phi)) ** 2 * self.length
+        by_north, by_up = self.suspension
+        north = -outward * math.sin(phi) * by_north
+        up = outward * math.cos(phi) * by_up - self.g
         return north, up
 
     def _release_velocity(self) -> tuple[float, float]:

@@ -29,7 +29,8 @@ FLATTENING = 1 / 298.257223563
 class Loose:
     """A program: its scene, the numbers and choices it uses, and the words that are true of it.
 
-    `lift` is a factor of the vertical centrifugal force; `changes` is whether that force changes along the swing.
+    `lift` is a factor of the vertical centrifugal force, `suspension` are factors of its parts to the north and upward at
+    the suspension alone; `changes` is whether the force changes along the swing.
     """
 
     scene: Scene
@@ -44,6 +45,7 @@ class Loose:
     model: str = "sphere"
     gravity: str = "ellipsoid"
     lift: float = 1.0
+    suspension: tuple[float, float] = (1.0, 1.0)
     changes: bool = True
     coriolis: float = 1.0
     stars: float = 0.0
@@ -67,7 +69,8 @@ class Loose:
         if self.gravity == "ellipsoid":
             e2 = FLATTENING * (2 - FLATTENING)
             axis = RADIUS_M / math.sqrt(1 - e2 * math.sin(phi) ** 2) * math.cos(phi)
-            outward = np.array([0.0, -math.sin(phi), math.cos(phi)])
+            by_north, by_up = self.suspension
+            outward = np.array([0.0, -math.sin(phi) * by_north, math.cos(phi) * by_up])
             centrifugal += self.rate**2 * axis * outward
         return np.asarray(force + centrifugal * [1.0, 1.0, self.lift])
 

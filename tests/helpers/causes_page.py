@@ -12,7 +12,7 @@ from places import ROOT
 from compare.diagnosis.advice import DO, FAMILIES, HABITS
 from compare.diagnosis.causes import LOOSE, causes_of
 from compare.diagnosis.fitted import MODELS
-from compare.diagnosis.programs import Program
+from compare.diagnosis.programs import EFFECTIVE_G, Program
 
 PAGE, BEFORE = ROOT / "docs/oracle.md", "## All causes\n"
 RIGHT = Program(
@@ -24,7 +24,7 @@ def causes() -> dict[str, str]:
     """Return what is said of each cause, by its word; one entry for a family of words."""
     said: dict[str, str] = {}
     rows = SimpleNamespace(cord=67.1)
-    for right in (RIGHT, replace(RIGHT, gravity_reading="effective")):
+    for right in (RIGHT, replace(RIGHT, suspension=EFFECTIVE_G)):
         for released in (True, False):
             for kind in ("sphere", "linear", "angle"):
                 case: Any = SimpleNamespace(

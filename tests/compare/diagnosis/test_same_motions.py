@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -97,7 +98,7 @@ def test_of_few_digits_all_of_omega_is_told_and_not_more() -> None:
 @pytest.mark.parametrize(
     ("length", "changes", "ids"),
     [
-        (67.0, False, {"no_lift", "uniform_gravity"}),
+        (67.0, False, {"no_lift"}),
         (10000.0, False, {"no_lift", "uniform_gravity"}),
         (10000.0, True, {"no_lift"}),
     ],
@@ -120,6 +121,45 @@ def test_without_the_vertical_centrifugal_force_no_other_g_is_told(
     made.changes = changes
     found = told(scene, times, made.rows(), 5e-8 * length)
     assert certain(found) == ids
+
+
+@pytest.mark.parametrize(
+    ("factors", "word"),
+    [
+        ((0.0, 1.0), "no_tilt"),
+        ((1.0, 0.0), "no_lift"),
+        ((-1.0, 1.0), "tilt_sign"),
+        ((2.0, 1.0), "tilt_double"),
+        ((1.0, -1.0), "lift_sign"),
+        ((1.0, 2.0), "lift_double"),
+        ((-1.0, -1.0), "centrifugal_sign"),
+        ((2.0, 2.0), "centrifugal_double"),
+    ],
+)
+def test_a_part_of_the_centrifugal_force_is_told_and_no_other_g(
+    factors: tuple[float, float], word: str
+) -> None:
+    """Each motion is also that of another g, with or without the force at the suspension."""
+    scene = paris("run.t_end=1300")
+    times = np.linspace(0, 1200, 601)
+    latitude = float(scene.exact.latitude)
+    made = Loose(scene, times, 67.0, 9.80665, latitude, RATE, (0.4, 0.3), "DOP853", EXACT)
+    made.start = tuple(float(value) for value in scene.exact.position[:2])
+    made.suspension = factors
+    half = replace(made, coriolis=0.5)
+    assert certain(told(scene, times, made.rows(), 7e-7)) == {word}
+    assert certain(told(scene, times, half.rows(), 7e-7)) == {word, "coriolis_half"}
+
+
+def test_a_latitude_of_the_other_sign_is_told_as_that() -> None:
+    """With Ω's vertical part alone and x to the west; and with swapped axes, where it is also a frame's half turn."""
+    scene = paris("site.latitude=25.6501")
+    other = paris("site.latitude=-25.6501")
+    x, y = run(other).T
+    found = explained(np.column_stack([-x, y]), scene)
+    assert "hemisphere" in {
+        word for cause in found.explanation.causes for word in cause.id.split("|")
+    }
 
 
 def test_a_sign_of_the_coriolis_force_may_be_that_of_the_rate() -> None:
