@@ -474,10 +474,10 @@ def likelier(other: Explanation, program: Explanation) -> Explanation:
         return other
     if RIVAL * program.residual_rms_m < other.residual_rms_m:
         return program
-    return _either_of(program, other)
+    return either_of(program, other)
 
 
-def _either_of(first: Explanation, second: Explanation) -> Explanation:
+def either_of(first: Explanation, second: Explanation) -> Explanation:
     """Return the explanation that one of two is true, with the conventions that both have."""
     shared = tuple(part for part in first.conventions if part in second.conventions)
     alternatives: list[Alternative] = []

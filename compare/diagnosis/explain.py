@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from .approximated import of_approximation
 from .case import AS_IF, WITHOUT_HEIGHTS, Explanation, FileCase, FileRows
 from .claims import (
     by_growth,
+    either_of,
     explanation_of,
     likelier,
     likelier_step,
@@ -44,7 +45,7 @@ from .programs import Program, SphericalPendulum
 from .runaways import falls, growth
 from .slips import of_slip
 from .stepped import of_loops, of_steps
-from .thresholds import NEEDED
+from .thresholds import NEEDED, RIVAL
 
 RENAMED = frozenset(("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned"))
 # Conventions that are no facts of the printed numbers: the residual without them decides. A unit of time is not among
@@ -255,10 +256,20 @@ def _explained_by_columns(file: _File, rows: FileRows) -> Explanation | None:
     observed = of_observation(printed)
     if observed is None:
         return _explained_by_evident_columns(printed, case)
-    if observed.price <= SIMPLE:
-        named, _ = explanation_of(case, readings_of(case))
-        return likelier(observed, named)
-    return likelier(observed, first_good_explanation(case, file.problem.scene))
+    if observed.price > SIMPLE:
+        return likelier(observed, first_good_explanation(case, file.problem.scene))
+    likeliest = observed
+    for one in (rows, *_with_names_as_printed(file, rows)):
+        case = file.case(one)
+        program, _ = explanation_of(case, readings_of(case))
+        likeliest = likelier(likeliest, program)
+    return likeliest
+
+
+def _with_names_as_printed(file: _File, rows: FileRows) -> Iterator[FileRows]:
+    """Yield the rows with their columns named as they are printed, if they are renamed: the release may be at fault."""
+    if any(convention.id in RENAMED for convention in rows.conventions):
+        yield file.rows(RENAMED)
 
 
 def _explained_by_evident_columns(printed: FileCase, case: FileCase) -> Explanation | None:
@@ -279,18 +290,32 @@ def _with_best_conventions(file: _File, rows: FileRows) -> tuple[Explanation, Fi
     alternatives: list[FileRows] = []
     if best.corrected_m > file.allowed_m:
         alternatives += other_conventions(rows, file.problem.start)
-    if any(convention.id in RENAMED for convention in rows.conventions):
-        # the release may be at fault, and not the names
-        alternatives.append(file.rows(RENAMED))
+    alternatives += _with_names_as_printed(file, rows)
     for alternative in alternatives:
         explanation = file.explained(alternative)
-        mirrored = any(map(_is_mirrored, explanation.causes))
         agrees = explanation.corrected_m <= file.allowed_m
         leaves_more = explanation.residual_rms_m >= NEEDED * best.residual_rms_m
-        if agrees and not mirrored and not leaves_more and explanation.score < best.score:
+        if not agrees or leaves_more:
+            continue
+        mirrored = any(map(_is_mirrored, explanation.causes))
+        leaves_less = NEEDED * explanation.residual_rms_m < best.residual_rms_m
+        if mirrored and _is_one_motion(explanation, best):
+            best = either_of(explanation, best)
+        elif leaves_less or (explanation.score < best.score and not mirrored):
             best = explanation
             rows = alternative
     return best, rows
+
+
+def _is_one_motion(mirrored: Explanation, other: Explanation) -> bool:
+    """Return whether a mirrored release is the same motion as a mirrored axis and a force of the wrong sign.
+
+    Each is two changes.
+    """
+    turned = {"hemisphere", "coriolis_sign"} & {cause.id for cause in other.known}
+    as_good = mirrored.residual_rms_m < RIVAL * other.residual_rms_m
+    prices = [one.price + len(one.conventions) for one in (mirrored, other)]
+    return bool(turned) and as_good and prices[0] <= prices[1]
 
 
 def _with_slip(file: _File, rows: FileRows, best: Explanation) -> Explanation:

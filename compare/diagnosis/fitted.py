@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -116,14 +117,22 @@ def _exchanged(
 ) -> CauseReading | None:
     """Return a reading with causes of some ids in place of others; None if no program can have them."""
     dropped = [cause for cause in reading.causes if cause.id in before - after]
+    kept = reading.reader.without(reading, dropped)
     missing = after - _cause_ids(reading)
-    other: CauseReading | None = reading.reader.without(reading, dropped)
-    for cause in catalogue:
-        if other is not None and cause.id in missing:
-            groups = {part.group for part in other.causes}
-            other = None if cause.group in groups else reading.reader.with_cause(other, cause)
-    if other is None or not after <= _cause_ids(other):
-        return None
+    # several causes may have one id
+    forms = [[cause for cause in catalogue if cause.id == cause_id] for cause_id in sorted(missing)]
+    others = [_with_causes(kept, causes) for causes in itertools.product(*forms)]
+    possible = [other for other in others if other is not None]
+    return min(possible, key=lambda other: other.residual_rms_m, default=None)
+
+
+def _with_causes(reading: CauseReading, causes: Sequence[Cause]) -> CauseReading | None:
+    """Return a reading with more causes; None if no program can have them."""
+    other: CauseReading | None = reading
+    for cause in causes:
+        if other is None or cause.group in {part.group for part in other.causes}:
+            return None
+        other = other.reader.with_cause(other, cause)
     return other
 
 

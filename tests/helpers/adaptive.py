@@ -29,8 +29,8 @@ FLATTENING = 1 / 298.257223563
 class Loose:
     """A program: its scene, the numbers and choices it uses, and the words that are true of it.
 
-    `lift` is a factor of the vertical centrifugal force, `suspension` are factors of its parts to the north and upward at
-    the suspension alone; `changes` is whether the force changes along the swing.
+    `lift` is a factor of the vertical centrifugal force, `suspension` are factors of its parts to the north and upward
+    at the suspension alone; `changes` is whether the force changes along the swing.
     """
 
     scene: Scene
