@@ -19,6 +19,7 @@ _READINGS = {
 _MEASURED = ("pendulum.length", "pendulum.drag", "site.latitude", "site.gravity")
 _UNCERTAIN_DIGITS = 6  # of the period of small swings, where inputs are uncertain
 _SEEN_M = 1e-6  # a rest position nearer to the vertical is not told apart from it by eye or tape
+_LEAST_DRAG = 1e-300  # in 1/s: how soon a smaller one halves the swing is beyond the range of doubles, or nearly
 # of a compass, clockwise from north
 _DIRECTIONS = (
     "north",
@@ -120,7 +121,7 @@ def _drag(scene: Scene) -> str:
     if not drag:
         return "no drag"
     text = f"drag {scene.pendulum.drag} 1/s"
-    if scene.exact.creeps or not scene.exact.gravity:
+    if scene.exact.creeps or not scene.exact.gravity or float(drag) < _LEAST_DRAG:
         return text
     halves_s = 2 * log(2) / float(drag)
     return f"{text} (the swing halves in {duration_in_words(halves_s)})"

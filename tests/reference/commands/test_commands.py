@@ -189,8 +189,14 @@ def test_a_motion_whose_first_step_is_too_short_for_doubles_has_no_period(foucau
     assert (status, "no period The engine stopped" in unwrapped(out)) == (0, True)
 
 
-def test_show_of_numbers_that_are_too_large_for_a_double_ends_without_a_traceback(foucault):
-    for change in ("site.equatorial_radius=1e309", "site.rotation_rate=1e309"):
+def test_show_of_numbers_beyond_the_range_of_doubles_ends_without_a_traceback(foucault):
+    changes = (
+        "site.equatorial_radius=1e309",
+        "site.rotation_rate=1e309",
+        "pendulum.drag=1e-320",
+        "pendulum.drag=1e-350",
+    )
+    for change in changes:
         status, out, err = foucault("show", "paris", "--set", change)
         assert status in (0, 2), (out, err)
 
