@@ -134,7 +134,7 @@ HABITS = {  # of a file: ids, what is said of it, what to do
     "rows_reversed": ("has its rows in reverse order", "Write the rows in order of time."),
     "rows_late, rows_early": (
         "has its clock behind or ahead of its rows",
-        "Print time and state of the same moment.",
+        "Print time and state of the same moment, the time from the release on.",
     ),
 }
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -18,8 +18,12 @@ from reference.numbers.precision import Array
 
 from ..candidates.candidate import Deviation
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
-from .case import FileRows, largest
+from .case import FileRows, largest, rms
 from .phasors import ComplexArray, as_angles, fit_phasors, sinc
+from .thresholds import NEEDED
+
+# x, y, z, vx, vy, vz of a right program in m and m/s at times in s from the release on, shape (times, 6)
+Truth = Callable[[Array], Array]
 
 # of the distance from the vertical: a row 0 nearer than this to the release is the release
 _NEAR = 2e-5
@@ -40,6 +44,8 @@ _SINGLE = 1e-6  # of the span: rounding of times in single precision
 # of the release's distance: largest residual of phasors that show when a clock began
 _ROUGH_FIT = 1e-2
 _SHIFTS = 3  # rows by which a clock may be off
+_SWINGS = 20  # by which it may start too late
+_NEWTON = 4  # steps that fit a shift of the clock
 _SHORTEST = 12  # rows that show a frequency
 _FIRST = 400  # rows that are used for it
 _UNFIT = 0.05  # of the distance from the vertical: the largest residual of two phasors
@@ -713,38 +719,95 @@ class _ReleasePassage:
 
 
 def shifted(
-    rows: FileRows, release: Array, frequency: float, length: float, in_order: bool
+    rows: FileRows, release: Array, frequency: float, length: float, in_order: bool, truth: Truth
 ) -> FileRows:
-    """Find a clock that is off by a few rows: the fitted motion passes the release then.
+    """Find a clock that does not start at the release: the fitted motion passes it then.
 
-    Unless they are known to be in order, the rows may be reversed.
+    The clock may be off by a few rows. If first rows were left out, the release may be some swings before it. Unless
+    they are known to be in order, the rows may be reversed.
+
+    Args:
+        rows: of the file.
+        release: x, y, z, vx, vy, vz of the scene in m and m/s.
+        frequency: of the scene's swing in rad/s.
+        length: of the cord in m.
+        in_order: whether the rows are known to be in order.
+        truth: returns the states of the scene at times in s.
     """
     if not frequency or len(rows.times) < _SHORTEST:
         return rows
-    start = as_angles(np.array([complex(release[0], release[1])]), length)[0]
-    speed = complex(release[3], release[4])
+    reach_m = abs(as_angles(np.array([complex(release[0], release[1])]), length)[0])
     spacing_s = float(np.median(np.diff(rows.times)))
+    swing_in_parts = 2 * math.pi / frequency / spacing_s * _PARTS
     orders = [rows] if in_order else [rows, _reversed(rows)]
-    passages: list[_ReleasePassage] = []
+    near: list[_ReleasePassage] = []
+    earlier: list[_ReleasePassage] = []
     for ordered in orders:
-        plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
-        fit = fit_phasors(ordered.times, plane, frequency)
-        if fit is None or fit.residual > _ROUGH_FIT * abs(start):
-            continue
-        for parts in range(-_SHIFTS * _PARTS, _SHIFTS * _PARTS + 1):
-            motion = fit.phasors.later(parts * spacing_s / _PARTS)
-            distance_m = abs(motion.start - start) + abs(motion.speed - speed) / frequency
-            passages.append(_ReleasePassage(float(distance_m), parts, ordered))
-    if not passages:
-        return rows
+        first = -max(math.ceil(_SWINGS * swing_in_parts), _SHIFTS * _PARTS)
+        passages = list(_passages(ordered, release, frequency, length, first))
+        near += passages[-2 * _SHIFTS * _PARTS - 1 :]
+        earlier += _nearest_of_each(passages)
     # of equal ones, the smallest shift
-    best = min(passages, key=lambda p: p.distance_m + 1e-9 * abs(start) * abs(p.parts))
-    if best.distance_m > 2 * _ROUGH_FIT * abs(start):
+    near.sort(key=lambda passage: passage.distance_m + 1e-9 * reach_m * abs(passage.parts))
+    at_release = [one for one in near[:1] if one.distance_m <= 2 * _ROUGH_FIT * reach_m]
+    possible = [one for one in earlier if one.distance_m <= 2 * _ROUGH_FIT * reach_m]
+    count = math.ceil(swing_in_parts / _PARTS)
+
+    def off_m(passage: _ReleasePassage) -> float:
+        return _off_in_first_rows(passage, spacing_s, max(count, _SHORTEST), truth)
+
+    best = min(possible, key=off_m, default=None)
+    if best is None or (at_release and not NEEDED * off_m(best) < off_m(at_release[0])):
+        best = next(iter(at_release), None)
+    if best is None:
         return rows
 
     shift_s = best.parts * spacing_s / _PARTS
-    size_m = abs(start) * min(2.0, frequency * abs(shift_s))
+    size_m = reach_m * min(2.0, frequency * abs(shift_s))
     return _from_release(best, shift_s, float(size_m))
+
+
+def _passages(
+    rows: FileRows, release: Array, frequency: float, length: float, first: int
+) -> Iterator[_ReleasePassage]:
+    """Yield how near the fitted motion is to the release at each part of a row, from the first one on."""
+    start = as_angles(np.array([complex(release[0], release[1])]), length)[0]
+    speed = complex(release[3], release[4])
+    spacing_s = float(np.median(np.diff(rows.times)))
+    plane = as_angles(rows.plane @ np.array([1, 1j]), length)
+    fit = fit_phasors(rows.times, plane, frequency)
+    if fit is None or fit.residual > _ROUGH_FIT * abs(start):
+        return
+    for parts in range(first, _SHIFTS * _PARTS + 1):
+        motion = fit.phasors.later(parts * spacing_s / _PARTS)
+        distance_m = abs(motion.start - start) + abs(motion.speed - speed) / frequency
+        yield _ReleasePassage(float(distance_m), parts, rows)
+
+
+def _nearest_of_each(passages: Sequence[_ReleasePassage]) -> Iterator[_ReleasePassage]:
+    """Yield the nearest of the times at which the motion passes the release, one of each swing."""
+    for before, passage, after in zip(passages, passages[1:], passages[2:], strict=False):
+        if before.distance_m > passage.distance_m <= after.distance_m:
+            yield passage
+
+
+def _off_in_first_rows(
+    passage: _ReleasePassage, spacing_s: float, count: int, truth: Truth
+) -> float:
+    """Return the root mean square distance in m of the first rows from the truth, the clock shifted as it fits best.
+
+    The shift is known to a part of a row at first.
+    """
+    rows = passage.rows
+    times = rows.times[:count] - passage.parts * spacing_s / _PARTS
+    kept = times >= 0
+    times, plane = times[kept], rows.plane[:count][kept]
+    for _ in range(_NEWTON):
+        states = truth(times)
+        off, speed = plane - states[:, :2], states[:, 3:5]
+        change_s = float((off * speed).sum() / (speed**2).sum())
+        times = np.maximum(times + change_s, 0.0)
+    return rms(plane - truth(times)[:, :2])
 
 
 def _from_release(passage: _ReleasePassage, shift_s: float, size_m: float) -> FileRows:

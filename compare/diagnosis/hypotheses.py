@@ -224,9 +224,10 @@ class Hypothesis(Claim):
         return not self._is_round(cause, factors=False)
 
     def _shown(self, cause: Cause) -> bool:
-        """Return whether row 0 has the number itself: the place of the release."""
+        """Return whether row 0 has the number itself: the place of the release, unless rows are late."""
         rows = self.case.rows
-        return cause.id in ("release.x", "release.y") and rows.starts and rows.times[0] == 0
+        is_place = cause.id in ("release.x", "release.y") and "late" not in self.cause_ids
+        return is_place and rows.starts and bool(rows.times[0] == 0)
 
     def _is_round(self, cause: Cause, factors: bool = True) -> bool:
         """Return whether the number of a cause is round; of a step, whether it divides the spacing of the rows.
