@@ -95,16 +95,10 @@ _SAME_MOTION = (
     ("site.gravity", "pendulum.length"),
     # the vertical centrifugal force makes g smaller
     ("site.gravity", "no_lift"),
-    ("site.gravity", "lift_sign"),
-    ("site.gravity", "lift_double"),
-    ("effective_gravity site.gravity", "no_tilt"),
-    ("no_centrifugal site.gravity", "no_tilt"),
     # the turn of the plane is Ω sin φ, whatever makes it
     ("site.latitude", "site.rotation_rate"),
     ("site.latitude", "solar_day"),
-    ("site.latitude", "hemisphere"),
     ("hemisphere", "coriolis_sign"),
-    ("hemisphere", "coriolis_sign frame_x_west"),
     ("hemisphere", "turned_plane_sign"),
     ("coriolis_sign", "turned_plane_sign"),
     ("hemisphere inertial_rest", "turned_plane_sign"),
@@ -115,10 +109,21 @@ _SAME_MOTION = (
     # rows that are late show a bob that moves already
     ("late", "release.vx release.vy"),
 )
+# causes that may be the same motion as a simpler one
+_SIMPLER = (
+    # g without the vertical centrifugal force
+    ("effective_gravity site.gravity", "no_tilt"),
+    ("no_centrifugal site.gravity", "no_tilt"),
+    # the scene's but for its sign
+    ("site.latitude", "hemisphere"),
+    # Ω turned by 180° about the vertical, and reversed
+    ("coriolis_sign frame_x_west", "hemisphere"),
+)
 _BOTH_WAYS = tuple(way for pair in _SAME_MOTION for way in (pair, pair[::-1]))
 # where the first are read, the others are tried
 SAME_MOTIONS: tuple[tuple[frozenset[str], frozenset[str]], ...] = tuple(
-    (frozenset(before.split()), frozenset(after.split())) for before, after in _BOTH_WAYS
+    (frozenset(before.split()), frozenset(after.split()))
+    for before, after in (*_BOTH_WAYS, *_SIMPLER)
 )
 
 # what a step error looks like: alone each may be its cause, and two at once are no other motion than a step error's

@@ -806,7 +806,7 @@ def _off_in_first_rows(
         states = truth(times)
         off, speed = plane - states[:, :2], states[:, 3:5]
         change_s = float((off * speed).sum() / (speed**2).sum())
-        times = np.maximum(times + change_s, 0.0)
+        times = times + max(change_s, -float(times[0]))  # not before the release
     return rms(plane - truth(times)[:, :2])
 
 
