@@ -177,14 +177,14 @@ class Explanation:
             elif self.explains and not convention_ids.isdisjoint(ROUNDING):
                 yield "The rounding of its numbers explains the error."
             elif not self.slip:
-                yield "No mistake known to foucault explains the error."
+                yield "Nothing that was tried explains the error."
             return
         these = "this" if len([*self.causes, *corrected]) == 1 else "all this"
         left_out = ", and without its z" if without_z else ""
         tolerances = self.corrected_m / self.allowed_m
         beyond = ""
         if tolerances > 1 and not self.explains:
-            beyond = f", {tolerances:.2g} tolerances: no known mistake explains it"
+            beyond = f", {tolerances:.2g} tolerances: nothing that was tried explains it"
         yield f"With {these} corrected{left_out}, the error is {remaining}{beyond}."
 
 

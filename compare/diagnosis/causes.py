@@ -39,7 +39,7 @@ UNITS = {
     "g": " m/s²",
     "length": " m",
     "latitude": " degrees",
-    "drag": " 1/s",
+    "drag": " per second",
     "x": " m",
     "y": " m",
     "altitude": " m",
@@ -169,6 +169,9 @@ class Cause:
             number = f"{factor:.{PRINTED_DIGITS}g}"
         elif self.free == "step":
             number = f"{value:.3g} s"
+        elif self.free == "late":
+            decimal, _ = shortest_decimal(abs(value), uncertainty)
+            number = f"{decimal:.6g} s {'late' if value > 0 else 'early'}"
         else:
             decimal, _ = shortest_decimal(value, uncertainty)
             scene = f"{getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
@@ -178,6 +181,8 @@ class Cause:
 
 def shortest_decimal(value: float, doubt: float) -> tuple[float, int]:
     """Return the shortest decimal that is no further from a number than its doubt, and how many digits it has."""
+    if abs(value) <= doubt:
+        return 0.0, 1
     for digits in range(1, PRINTED_DIGITS):
         decimal = float(f"{value:.{digits}g}")
         if abs(decimal - value) <= doubt:
@@ -203,7 +208,7 @@ def causes_of(case: FileCase, kind: str) -> Iterator[Cause]:
         yield from _linspace(case.intervals)
     yield fitted_number("clock", "clock", CLOCK, "pace", stage="clock")
     if not released:
-        yield fitted_number("late", "clock", "writes its rows {value} late", "late", stage="clock")
+        yield fitted_number("late", "clock", "writes its rows {value}", "late", stage="clock")
     for method in METHODS:
         if method.late and (kind == "sphere" or right.vx or right.vy):
             continue  # it is known from the first rows of a linear motion from rest

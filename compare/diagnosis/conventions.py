@@ -10,7 +10,6 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 import numpy as np
 
@@ -72,6 +71,13 @@ _SHOWN = 8  # different numbers, none of which ends in a zero by accident
 # units of the last decimal: numbers that are all farther apart are not rounded to it
 _FAR_APART = 10
 _PARTS = 4  # of a row: programs that write every second or fourth step are off by such parts
+# rows and parts of a row by which a clock is off, in words
+_ROWS_SAID = {
+    (1, 0): "one row",
+    (0, 1): "a quarter of a row",
+    (0, 2): "half a row",
+    (0, 3): "three quarters of a row",
+}
 # order of a file's columns by which its third becomes the vertical
 _VERTICALS = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
 _CORD_LENGTHS = "cord lengths"  # which are angles in radians, roughly
@@ -817,8 +823,8 @@ def _from_release(passage: _ReleasePassage, shift_s: float, size_m: float) -> Fi
     """
     rows = passage.rows
     if passage.parts:
-        rows_late = Fraction(abs(passage.parts), _PARTS)
-        distance = "one row" if rows_late == 1 else f"{rows_late} rows"
+        whole, part = divmod(abs(passage.parts), _PARTS)
+        distance = _ROWS_SAID.get((whole, part), f"{whole + part / _PARTS:g} rows")
         side = "ahead of" if passage.parts > 0 else "behind"
         text = f"has its clock {side} its rows by {distance} ({abs(shift_s):.6g} s)"
         convention_id = "rows_late" if passage.parts < 0 else "rows_early"

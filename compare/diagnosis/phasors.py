@@ -374,7 +374,9 @@ def _taylor(order: int) -> tuple[float, ...]:
 METHODS = (
     FixedStepMethod("semi_implicit_euler", "semi-implicit (symplectic) Euler", kick=True),
     FixedStepMethod(
-        "semi_implicit_euler_drift", "semi-implicit (symplectic) Euler, position first", kick=False
+        "semi_implicit_euler_drift",
+        "semi-implicit (symplectic) Euler that moves the position first",
+        kick=False,
     ),
     FixedStepMethod("explicit_euler", "explicit Euler", _taylor(1)),
     FixedStepMethod("leapfrog", "leapfrog (Verlet)"),

@@ -221,7 +221,7 @@ def _verdict(score: Score) -> str:
 def _span(score: Score) -> str:
     t = score.errors.t
     rows = counted(len(t), "row" if score.candidate.positions else "transit")
-    span = f"t = {t[0]:.6g} to {t[-1]:.6g} of {score.scene.run.t_end} s"
+    span = f"t = {t[0]:.10g} to {t[-1]:.10g} of {score.scene.run.t_end} s"
     return f"{rows}, {span}: {percent(score.covered)}"
 
 
