@@ -46,6 +46,9 @@ _SHORTER = {
     # all of Ω is vertical, and g is the effective one
     "pole": "no_sine",
 }
+# beside a phase that drifts, the vertical part of the centrifugal force is not seen
+_WITHOUT_CENTRIFUGAL = ("no_centrifugal", "effective_gravity")
+_OR_A_PART = "or leaves out its horizontal part alone"
 _LONGER = {shorter: longer for longer, shorter in _SHORTER.items()}
 # a linear motion shows only their quotient
 _ONE_NUMBER = ("site.gravity", "pendulum.length")
@@ -281,6 +284,8 @@ class _AmongRivals:
             certain = needed and not self.best.arbitrary_inputs
             return unnamed_step_error(cause.size_m, "integrator" if certain else AS_IF)
         needed = self.best.is_sound and self._growth(cause) >= self._least_growth
+        if self.best.drifts and cause.id in _WITHOUT_CENTRIFUGAL:
+            cause = replace(cause, text=f"{cause.text}, {_OR_A_PART}")
         if needed and self._has_round_number(cause):
             return self._in_whole_steps(cause)
         return hedged(cause)

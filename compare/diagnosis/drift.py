@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from .case import FileCase
-from .causes import DRIFT, LIKE_A_DRIFT, causes_of, is_like_a_drift
+from .causes import DRIFT, LIKE_A_DRIFT, VERTICAL, Cause, causes_of, is_like_a_drift
 from .families import FamilyFit
 from .fitted import TRIED, polished
 from .programs import NAMES
@@ -30,6 +30,7 @@ def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]
     readers = {reading.reader.right.kind: reading.reader for reading in reversed(near)}
     for kind, reader in readers.items():
         candidates += _unlike_a_drift(case, kind, reader)
+    candidates = [one for one in candidates if not any(map(_is_vertical, one.causes))]
     different: dict[tuple[str, frozenset[str]], CauseReading] = {}
     for reading in candidates:
         texts = frozenset(cause.text for cause in reading.causes)
@@ -40,7 +41,8 @@ def drifting(case: FileCase, near: Sequence[CauseReading]) -> list[CauseReading]
 
 def _unlike_a_drift(case: FileCase, kind: str, reader: Reader) -> list[CauseReading]:
     """Return the likeliest readings of a family, of causes that are not like a drift."""
-    catalogue = [cause for cause in causes_of(case, kind) if not is_like_a_drift(cause.id)]
+    every = causes_of(case, kind)
+    catalogue = [one for one in every if not (is_like_a_drift(one.id) or _is_vertical(one))]
     blind = replace(reader, fit=_blind(reader))
     likeliest = blind.readings(catalogue)[:TRIED]
     return [replace(reading, reader=reader) for reading in likeliest]
@@ -56,6 +58,11 @@ def instead_of_drift(case: FileCase, reading: CauseReading) -> Iterator[CauseRea
             beside = reader.with_cause(without, cause)
             if beside is not None:
                 yield polished(case, beside)
+
+
+def _is_vertical(cause: Cause) -> bool:
+    """Return whether a cause differs from a simpler one by the vertical centrifugal force, which is not seen here."""
+    return cause.id in VERTICAL
 
 
 def _with_drift(reading: CauseReading) -> CauseReading | None:

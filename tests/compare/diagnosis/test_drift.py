@@ -38,11 +38,21 @@ def test_the_centrifugal_force_is_told_beside_a_step_error() -> None:
     assert not words & LIKE_A_STEP
 
 
-def test_where_a_coarse_step_error_leaves_too_much_the_motion_is_merely_like_that() -> None:
+def test_beside_a_coarse_step_error_the_vertical_centrifugal_force_is_not_seen() -> None:
+    """A phase that drifts is that of another g, too."""
     found = explained(1e-4, {"no_centrifugal"}, gravity="none")
-    assert found.words == {"integrator_loose"} and not found.alternatives
-    stages = {cause.id: cause.stage for cause in found.explanation.causes}
-    assert stages["as_if.effective_gravity"] == "as_if"
+    assert found.words == {"effective_gravity", "integrator_loose"} and not found.alternatives
+    text = {cause.id: cause.text for cause in found.explanation.causes}["effective_gravity"]
+    assert text.endswith("or leaves out its horizontal part alone")
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
+def test_of_a_program_that_has_the_vertical_force_no_more_is_certain_than_that(rtol) -> None:
+    found = explained(rtol, {"no_tilt"}, suspension=(0.0, 1.0))
+    assert found.words <= {"no_centrifugal", "effective_gravity", "no_tilt", "integrator_loose"}
+    for cause in found.explanation.known:
+        alone = cause.id in ("no_tilt", "integrator_loose")
+        assert alone or cause.text.endswith("or leaves out its horizontal part alone")
 
 
 def test_a_coriolis_force_of_the_wrong_sign_is_told_beside_a_step_error() -> None:

@@ -143,8 +143,8 @@ def test_a_wrong_run_disagrees_with_exit_status_1(foucault, tmp_path, golden, st
 def test_without_a_diagnosis_nothing_is_claimed_about_one(foucault, tmp_path):
     nowhere = [[0.3, 0.4], [0.1, 0.2], [0.2, -0.3]]
     path = write_csv(tmp_path / "wrong.csv", [0.0, 60.0, 120.0], nowhere, "xy")
-    assert "No mistake" not in foucault("score", "paris", path, "--no-diagnosis")[1]
-    assert "No mistake" in foucault("score", "paris", path)[1]
+    assert "Nothing that was tried" not in foucault("score", "paris", path, "--no-diagnosis")[1]
+    assert "Nothing that was tried" in foucault("score", "paris", path)[1]
 
 
 def test_the_tolerance_decides(foucault, tmp_path, golden, states):
