@@ -40,6 +40,8 @@ _INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")
 # relative error of the leading error of a step, over the square of the swing's angle
 _WIDE = 2.0
 _WHOLE = 1e-3  # of a number of steps: how far it may be from a whole number
+# inputs of the frequency of the swing that a program may have typed into it
+_IGNORED = ("g",), ("length",), ("g", "length")
 _TRIED = 30  # readings of a family that are run
 # decades by which a reading that explains all files may be dearer than the cheapest
 EQUAL = math.log10(RIVAL)
@@ -63,6 +65,22 @@ class Trial:
     def fits(self) -> dict[str, FamilyFit]:
         """The fits of its rows by family."""
         return {fit.kind: fit for fit in fits_of(self.case)}
+
+    def ignoring(self, names: Sequence[str], first: Trial) -> Trial:
+        """Return the trial of a program that was given some numbers, and computed with those of the first run.
+
+        Of two frequencies that sparse rows do not distinguish, the fits find the one that is
+        nearer to the frequency of such a program.
+        """
+        numbers = {name: getattr(first.case.right, name) for name in names}
+        right = self.case.right.changed(**numbers)
+        frequency = math.sqrt(abs(right.theta()[5]))
+        fastest = max(frequency, self.case.frequency)
+        spacing_s = float(np.median(np.diff(self.case.rows.times)))
+        is_sparse = fastest * spacing_s > math.pi  # fewer than two rows a swing
+        if right == self.case.right or not is_sparse:
+            return self
+        return replace(self, case=replace(self.case, right=right, frequency=frequency))
 
     @cached_property
     def causes(self) -> dict[tuple[str, str, int], Cause]:
@@ -174,11 +192,16 @@ class JointCase(FileCase):
         runs = zip(self.runs, program.programs, strict=True)
         return self.side_by_side([run.case.positions(run_program) for run, run_program in runs])
 
-    def _fit(self, kind: str) -> FamilyFit:
-        """Return the fits of a family to all runs as one fit."""
+    def _fit(self, kind: str, fitted: Sequence[Trial]) -> FamilyFit:
+        """Return the fits of a family to all runs as one fit.
+
+        Args:
+            kind: of the family.
+            fitted: the runs, or what their fits start from.
+        """
         fits = []
-        for run in self.runs:
-            fit = run.fits[kind]
+        for run, fitted_run in zip(self.runs, fitted, strict=True):
+            fit = fitted_run.fits[kind]
             share = math.sqrt(len(run.case.rows.times) / len(self.rows.times))
             weight = self.weight(run) * share
             fits.append(
@@ -213,7 +236,23 @@ class JointCase(FileCase):
 
         Their residuals are at most `most` times what is permitted in each run.
         """
-        fits = [self._fit(kind) for kind in self._common_kinds()]
+        for fitted in self._fitted():
+            readings = self._readings_of(fitted, most)
+            if readings:
+                return readings
+        return []
+
+    def _fitted(self) -> Iterator[tuple[Trial, ...]]:
+        """Yield the runs, then what else their fits may start from if their rows are sparse."""
+        yield self.runs
+        for names in _IGNORED:
+            fitted = tuple(run.ignoring(names, self.runs[0]) for run in self.runs)
+            if any(new is not run for new, run in zip(fitted, self.runs, strict=True)):
+                yield fitted
+
+    def _readings_of(self, fitted: Sequence[Trial], most: float) -> list[CauseReading]:
+        """Return the readings of some fits of all runs, as `readings` does."""
+        fits = [self._fit(kind, fitted) for kind in _common_kinds(fitted)]
         finite = [fit for fit in fits if np.isfinite(fit.slopes).all()]
         readers = [replace(reader, joint=True) for reader in readers_of(self, finite)]
         readings = [
@@ -221,13 +260,6 @@ class JointCase(FileCase):
         ]
         explaining = [reading for reading in readings if self.off(reading) <= most]
         return sorted(explaining, key=lambda reading: reading.score)
-
-    def _common_kinds(self) -> list[str]:
-        """Return the families that fit all runs."""
-        kinds = list(self.runs[0].fits)
-        for run in self.runs:
-            kinds = [kind for kind in kinds if kind in run.fits]
-        return kinds
 
     def off(self, reading: CauseReading) -> float:
         """Return the largest residual of a reading in any run, over what is permitted there."""
@@ -286,6 +318,14 @@ class JointCase(FileCase):
             score=reading.score,
             allowed_m=case.allowed_m,
         )
+
+
+def _common_kinds(runs: Sequence[Trial]) -> list[str]:
+    """Return the families that fit all runs."""
+    kinds = list(runs[0].fits)
+    for run in runs:
+        kinds = [kind for kind in kinds if kind in run.fits]
+    return kinds
 
 
 def _block_diagonal(blocks: Sequence[Array]) -> Array:

@@ -191,6 +191,24 @@ def test_a_number_in_proportion_is_told_from_one_that_is_typed(
         )
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("g=9.81",), "computes with g = 9.81 m/s²"),
+        (("g=9.81", "l=20"), "computes with g = 9.81 m/s²"),
+    ],
+)
+def test_a_typed_number_is_found_in_rows_that_are_half_a_swing_apart(
+    foucault: Run, mistaken: Path, words: tuple[str, ...], said: str
+) -> None:
+    """With a quarter of g, which the program ignores, a slower swing would have the same phases in every row."""
+    sparse = ("--set", "run.grid_step=5", "--set", "run.transits=false", "--t-end", "600")
+    run = command([str(mistaken)], "reading=2", *words)
+    text = foucault("score", "museum", *sparse, "--run", run, "--experiments", "--repeats", "0")[1]
+    assert "Measured: one explanation makes the " in text
+    assert f"It seems that your program {said}: off by " in text
+
+
 def test_a_program_that_fails_or_is_killed_draws_no_conclusion(
     foucault: Run, tmp_path: Path
 ) -> None:
