@@ -28,12 +28,12 @@ from .case import AS_IF, Explanation, FileCase, largest, rms
 from .causes import PHASE
 from .claims import explanation_of, graded, hedged, shows_steps, with_alternative_steps
 from .families import fit_pendulum
-from .fitted import polished, readings_of
+from .fitted import BETTER, POLISHED, polished, readings_of
 from .hypotheses import Claim, Hypothesis
 from .loops import LinearSteps, likely_loops
 from .phasors import TITLES
 from .programs import Program, SphericalPendulum
-from .readings import CauseReading
+from .readings import CauseReading, adjusted
 from .thresholds import NEEDED
 
 _TITLES = TITLES | {"heun": TITLES["rk2"]}
@@ -54,11 +54,16 @@ _RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "heun": ((1.0,), (1 / 2, 1 / 2)),
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
-LONGEST = 15_000  # steps that are run; only the rows up to there are read
+_FIRST_STEPS = (
+    15_000  # the rows up to there are read first, and all rows only if steps explain these
+)
 _FEWEST = 30  # rows that determine a motion; up to twice as many steps are run to reach them
+# A step takes about a microsecond, and a quarter of that in long leaps. A day in Paris in the shortest
+# steps that are tried is 8 million. Of a longer file the end would not be looked at: none is explained.
+_MOST_STEPS = 10_000_000
 _TRIED = 24  # numbers of steps that are run at a time
-_LEAP = 4  # steps that are compiled as one
-_WORTH = 4000  # steps from which compiling several as one pays
+# steps that are compiled as one, by the number of steps from which compiling them pays
+_LEAPS = {4: 4_000, 16: 400_000}
 _SEARCHED = 8_000  # steps that are run at most while their number is unknown
 _SWING = 1.5  # periods at the beginning from which the step is estimated
 _LIKELY = 3  # steps that are tried on all rows
@@ -123,17 +128,22 @@ class Steps(SphericalPendulum):
 
     def _at(self, times: Array, thetas: Array) -> Array:
         """Return x and y in m at some times, shape (times, 2, columns of thetas)."""
-        indices = np.round(times / self.spacing_s).astype(int)
+        indices = np.round(times / self.spacing_s).astype(np.int64)
         steps_per_row = np.full(thetas.shape[1], self.steps_per_row)
-        return np.asarray(self.all_rows(thetas, steps_per_row, int(indices[-1]))[indices])
+        return self.rows_at(thetas, steps_per_row, indices)
 
-    def all_rows(self, thetas: Array, steps_per_row: npt.NDArray[np.int64], count: int) -> Array:
-        """Return x and y in m of rows 0 to `count`, shape (count + 1, 2, columns of thetas).
+    def rows_at(
+        self,
+        thetas: Array,
+        steps_per_row: npt.NDArray[np.int64],
+        indices: npt.NDArray[np.int64],
+    ) -> Array:
+        """Return x and y in m of some rows, shape (indices, 2, columns of thetas).
 
         Args:
             thetas: one in each column.
             steps_per_row: number of steps from row to row, for each column.
-            count: index of the last row.
+            indices: of the rows, counted in spacings from the release on.
         """
         # one function, because all steps are a loop over arrays that are prepared before it
         constants = [self.constants(theta) for theta in thetas.T]
@@ -142,28 +152,26 @@ class Steps(SphericalPendulum):
         ).T.copy()
         parameters[0] = self.spacing_s / steps_per_row
         state = np.column_stack([self.start(theta) for theta in thetas.T])
-        rows = np.full((count + 1, *state[:2].shape), np.nan)
-        rows[0] = state[:2]
+        rows = np.full((len(indices), *state[:2].shape), np.nan)
 
         # the number of steps after which each column reaches each row, sorted; what is reached
         # after the same number is stored together
-        steps_to_row = np.arange(1, count + 1)[:, None] * steps_per_row
+        steps_to_row = indices[:, None] * steps_per_row
         step_counts, first = np.unique(np.sort(steps_to_row, axis=None), return_index=True)
         reached = np.split(np.argsort(steps_to_row, axis=None), first[1:])
 
-        leap = _LEAP if step_counts[-1] >= _WORTH else 1
-        one_step = _compiled_steps(self.method, 1)
-        leap_of_steps = _compiled_steps(self.method, leap)
+        leaps = [leap for leap, worth in _LEAPS.items() if step_counts[-1] >= worth]
         done = 0
         for step_count, places in zip(step_counts.tolist(), reached, strict=True):
-            leaps, single_steps = divmod(step_count - done, leap)
-            for _ in range(leaps):
-                state = leap_of_steps(state, pars=parameters)
-            for _ in range(single_steps):
-                state = one_step(state, pars=parameters)
+            remaining = step_count - done
+            for leap in (*reversed(leaps), 1):
+                steps = _compiled_steps(self.method, leap)
+                repeats, remaining = divmod(remaining, leap)
+                for _ in range(repeats):
+                    state = steps(state, pars=parameters)
             done = step_count
             row, column = np.divmod(places, len(steps_per_row))
-            rows[row + 1, :, column] = state[:2, column].T
+            rows[row, :, column] = state[:2, column].T
         return np.asarray(rows * thetas[11])
 
 
@@ -171,7 +179,8 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     """Return the explanation of rows that a fixed-step method made; None if none did.
 
     The numbers of the motion are fitted with these steps; the effect of the steps is subtracted
-    from the rows before they are read.
+    from the rows before they are read. Of a long file the first rows show whether some steps are
+    likely; what is said of them holds for all rows.
 
     Args:
         case: the rows.
@@ -187,11 +196,13 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     program = None if reading is None else reading.program
     explanations = []
     for steps in likely_steps(replace(flat, right=right), program):
-        longest = max(LONGEST, min(_FEWEST * steps.steps_per_row, 2 * LONGEST))
-        count = int((rows.times <= steps.step_s * longest).sum())
+        if rows.times[-1] > steps.step_s * _MOST_STEPS:
+            continue
+        first_steps = max(_FIRST_STEPS, min(_FEWEST * steps.steps_per_row, 2 * _FIRST_STEPS))
+        count = int((rows.times <= steps.step_s * first_steps).sum())
         if count < _FEWEST:
             continue
-        explanation = _explanation_with(flat.part(count), steps)
+        explanation = _explanation_with(flat, steps, count)
         if explanation is None:
             continue
         explanations.append(explanation)
@@ -205,7 +216,7 @@ def of_loops(case: FileCase) -> Explanation | None:
     flat = case.in_the_plane()
     loops = likely_loops(flat)
     for loop in loops:
-        explanation = _explanation_with(flat, loop)
+        explanation = _explanation_with(flat, loop, len(flat.rows.times))
         if explanation is not None:
             return with_alternative_steps(explanation, [step_cause(one) for one in loops])
     return None
@@ -231,60 +242,138 @@ class _SteppedMotion:
         rows = steps.rows(theta, times, 2)
         return cls(steps, rows, rows - steps.exact(theta, times))
 
+    @classmethod
+    def of_program(
+        cls, case: FileCase, program: Program, steps: Steps | LinearSteps
+    ) -> _SteppedMotion:
+        """Return the motion of a program with some steps, at the times of a case."""
+        pendulum, theta = case.pendulum_of(program)
+        return cls.of(replace(steps, **vars(pendulum)), theta, case.rows.times)
+
     def taken_from(self, case: FileCase) -> FileCase:
         """Return a case with the effect of the steps subtracted from its rows."""
         rows = replace(case.rows, positions=case.rows.positions - self.effect)
         return replace(case, rows=rows)
 
+    def residuals(self, case: FileCase) -> Array:
+        """Return the rows of a case less its own in m, shape (rows, 2)."""
+        return np.asarray(case.rows.positions - self.rows)
 
-def _explanation_with(case: FileCase, steps: Steps | LinearSteps) -> Explanation | None:
-    """Return the explanation of rows that some steps made; None if others did."""
-    rows = case.rows
-    fit = fit_pendulum(case, steps, [np.array(steps.guess)])
+    def is_near(self, case: FileCase) -> bool:
+        """Return whether the residual is a small part of the effect of the steps, so that they may be right."""
+        most_m = max(case.floor, _STEP_LEFT * rms(self.effect))
+        return rms(self.residuals(case)) <= most_m
+
+
+@dataclass(frozen=True)
+class _SteppedReading:
+    """What rows show beside the effect of some steps.
+
+    Attributes:
+        case: the rows.
+        best: the best hypothesis of the rows less the effect.
+        readings: of these.
+        motion: of the best hypothesis with the steps.
+    """
+
+    case: FileCase
+    best: Hypothesis
+    readings: list[CauseReading]
+    motion: _SteppedMotion
+
+    @classmethod
+    def of(cls, case: FileCase, motion: _SteppedMotion) -> _SteppedReading | None:
+        """Return the reading of rows less the effect of a motion's steps; None if they are of another model.
+
+        If the motion is nearly right, they are read again less the effect of a better one.
+        """
+        reading = None
+        for _ in range(_READINGS):
+            exact_case = motion.taken_from(case)
+            readings = readings_of(exact_case, stepped=True)
+            _, best = explanation_of(exact_case, readings, stepped=True)
+            if best is None or best.reading.program.kind != motion.steps.kind:
+                return None
+            motion = _SteppedMotion.of_program(case, best.reading.program, motion.steps)
+            reading = cls(case, best, readings, motion)
+            if rms(motion.residuals(case)) <= case.floor or not motion.is_near(case):
+                break
+        return reading
+
+    @property
+    def explains(self) -> bool:
+        """Whether the steps make the rows, with the causes of the best hypothesis."""
+        residuals = self.motion.residuals(self.case)
+        if not self.motion.is_near(self.case) or not largest(residuals) <= self.case.enough:
+            return False
+        # the steps of a linear model are exact: a residual beyond rounding refutes them; and arbitrary
+        # numbers absorb the residuals of wrong steps
+        most = 1.0 if self.best.arbitrary else NEEDED
+        return self.motion.steps.kind != "linear" or rms(residuals) <= most * self.case.resolution
+
+    def of_all(self, case: FileCase) -> _SteppedReading | None:
+        """Return the reading of all rows of a case, of which this one has read the first.
+
+        The numbers are fitted again first: they were known to the precision of the first rows, and their
+        effect grows with time.
+        """
+        program = self.best.reading.program
+        names = [cause.free for cause in self.best.reading.causes if cause.free]
+
+        def rows_of(program: Program) -> Array:
+            pendulum, theta = case.pendulum_of(program)
+            steps = replace(self.motion.steps, **vars(pendulum))
+            return steps.rows(theta, case.rows.times, 2)
+
+        if names:
+            goal = case.rows.positions
+            program, _ = adjusted(program, names, rows_of, goal, steps=POLISHED, gain=BETTER)
+        motion = _SteppedMotion.of_program(case, program, self.motion.steps)
+        return _SteppedReading.of(case, motion)
+
+    def explanation(self) -> Explanation | None:
+        """Return the explanation by its causes and the steps; None if the tests of a claim do not allow the steps."""
+        case = self.case
+        best = self.best
+        residuals = self.motion.residuals(case)
+        readings = [replace(best.reading, residual_rms_m=rms(residuals)), *self.readings]
+        explanation, _ = explanation_of(self.motion.taken_from(case), readings, stepped=True)
+        without_steps = polished(case, best.reading)
+        step = graded(
+            Claim(case, residuals),
+            step_cause(self.motion.steps, largest(self.motion.effect)),
+            rms(case.residuals(without_steps.program)),
+        )
+        if step is None:
+            return None
+        causes = explanation.causes
+        if not shows_steps(best):
+            step = hedged(step)
+            causes = tuple(hedged(cause) if cause.id in PHASE else cause for cause in causes)
+        causes = (*causes, step)
+        return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
+
+
+def _explanation_with(
+    case: FileCase, steps: Steps | LinearSteps, first_rows: int
+) -> Explanation | None:
+    """Return the explanation of rows that some steps made; None if others did.
+
+    All rows are read only if the steps explain the first ones.
+    """
+    first = case.part(first_rows)
+    fit = fit_pendulum(first, steps, [np.array(steps.guess)])
     if fit is None:
         return None
-
-    motion = _SteppedMotion.of(steps, fit.theta, rows.times)
-    best: Hypothesis | None = None
-    readings: list[CauseReading] = []
-    for _ in range(_READINGS):
-        residual_m = rms(rows.positions - motion.rows)
-        if not residual_m <= max(case.floor, _STEP_LEFT * rms(motion.effect)):
-            return None
-        if best is not None and residual_m <= case.floor:
-            break
-        exact_case = motion.taken_from(case)
-        readings = readings_of(exact_case, stepped=True)
-        _, best = explanation_of(exact_case, readings, stepped=True)
-        if best is None or best.reading.program.kind != steps.kind:
-            return None
-        pendulum, theta = case.pendulum_of(best.reading.program)
-        motion = _SteppedMotion.of(replace(motion.steps, **vars(pendulum)), theta, rows.times)
-
-    residuals = rows.positions - motion.rows
-    if best is None or not largest(residuals) <= case.enough:
+    motion = _SteppedMotion.of(steps, fit.theta, first.rows.times)
+    if not motion.is_near(first):
         return None
-    # the steps of a linear model are exact: a residual beyond rounding refutes them; and arbitrary
-    # numbers absorb the residuals of wrong steps
-    most = 1.0 if best.arbitrary else NEEDED
-    if steps.kind == "linear" and not rms(residuals) <= most * case.resolution:
+    reading = _SteppedReading.of(first, motion)
+    if reading is None or not reading.explains:
         return None
-    readings = [replace(best.reading, residual_rms_m=rms(residuals)), *readings]
-    explanation, _ = explanation_of(motion.taken_from(case), readings, stepped=True)
-    without_steps = polished(case, best.reading)
-    step = graded(
-        Claim(case, residuals),
-        step_cause(motion.steps, largest(motion.effect)),
-        rms(case.residuals(without_steps.program)),
-    )
-    if step is None:
-        return None
-    causes = explanation.causes
-    if not shows_steps(best):
-        step = hedged(step)
-        causes = tuple(hedged(cause) if cause.id in PHASE else cause for cause in causes)
-    causes = (*causes, step)
-    return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
+    if first_rows < len(case.rows.times):
+        reading = reading.of_all(case)
+    return None if reading is None else reading.explanation()
 
 
 def step_cause(steps: Steps | LinearSteps, size_m: float = math.nan) -> Deviation:
@@ -475,8 +564,8 @@ def _residual_norms(
     """
     count = len(steps_per_row)
     repeated = thetas.repeat(count, axis=1)
-    rows = steps.all_rows(
-        repeated, np.tile(steps_per_row, thetas.shape[1]), len(swing.rows.times) - 1
+    rows = steps.rows_at(
+        repeated, np.tile(steps_per_row, thetas.shape[1]), np.arange(len(swing.rows.times))
     )
     residuals = (swing.rows.positions[:, :, None] - rows).reshape(-1, rows.shape[2])
     basis = np.linalg.qr(slopes)[0]
