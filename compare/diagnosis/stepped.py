@@ -54,9 +54,8 @@ _RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "heun": ((1.0,), (1 / 2, 1 / 2)),
     "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
 }
-_FIRST_STEPS = (
-    15_000  # the rows up to there are read first, and all rows only if steps explain these
-)
+# The rows up to there are read first, and all rows only if some steps explain these.
+FIRST_STEPS = 15_000
 _FEWEST = 30  # rows that determine a motion; up to twice as many steps are run to reach them
 # A step takes about a microsecond, and a quarter of that in long leaps. A day in Paris in the shortest
 # steps that are tried is 8 million. Of a longer file the end would not be looked at: none is explained.
@@ -196,9 +195,7 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
     program = None if reading is None else reading.program
     explanations = []
     for steps in likely_steps(replace(flat, right=right), program):
-        if rows.times[-1] > steps.step_s * _MOST_STEPS:
-            continue
-        first_steps = max(_FIRST_STEPS, min(_FEWEST * steps.steps_per_row, 2 * _FIRST_STEPS))
+        first_steps = max(FIRST_STEPS, min(_FEWEST * steps.steps_per_row, 2 * FIRST_STEPS))
         count = int((rows.times <= steps.step_s * first_steps).sum())
         if count < _FEWEST:
             continue
@@ -395,7 +392,7 @@ class _Candidate:
 def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
     """Return the methods and steps that fit the first swing, the likeliest first.
 
-    There are none for rows that are not evenly spaced.
+    There are none for rows that are not evenly spaced, nor steps so short that they do not run to the last row.
 
     Args:
         case: the rows, with x and y alone, the first of them evenly spaced from the release on.
@@ -410,6 +407,8 @@ def likely_steps(case: FileCase, program: Program | None) -> list[Steps]:
         candidates += _candidates(swing, method, program)
     # steps that diverge have no finite residual
     candidates = [candidate for candidate in candidates if math.isfinite(candidate.residual_m)]
+    last_s = float(case.rows.times[-1])
+    candidates = [one for one in candidates if one.steps.step_s * _MOST_STEPS >= last_s]
     candidates.sort(key=lambda candidate: candidate.residual_m)
     sizes = [candidate.residual_m for candidate in candidates]
     least_m = next((size for size in sizes if size), 0.0)

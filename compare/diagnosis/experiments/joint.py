@@ -28,7 +28,7 @@ from ..fitted import MODELS, polished, ranked, readers_of, sized
 from ..phasors import FixedStepMethod
 from ..programs import Program
 from ..readings import CauseReading
-from ..stepped import LONGEST, Steps, step_cause
+from ..stepped import FIRST_STEPS, Steps, step_cause
 from ..thresholds import RIVAL
 
 # how a cause follows the scene; the end of its sentence
@@ -278,6 +278,9 @@ class JointCase(FileCase):
     ) -> tuple[JointCase, Deviation]:
         """Return the case with the effect of steps subtracted from its rows, and their cause.
 
+        The effect of the steps of right programs is that of programs with mistakes in the first rows alone: of
+        long files only these are taken then.
+
         Args:
             steps: of the first run.
             way: TYPED or FACTOR: how a step follows {setting}.
@@ -290,8 +293,10 @@ class JointCase(FileCase):
         for run, run_program in zip(self.runs, program.programs, strict=True):
             setting = run.setting if way == FACTOR else 1.0
             run_steps = replace(steps, steps_per_row=round(steps.steps_per_row / setting))
-            count = int((run.case.rows.times <= run_steps.step_s * LONGEST).sum())
-            case = run.case.part(count)
+            case = run.case
+            if reading is None:
+                first_s = run_steps.step_s * FIRST_STEPS
+                case = case.part(int((case.rows.times <= first_s).sum()))
             pendulum, theta = case.pendulum_of(run_program)
             times = case.rows.times
             stepped = replace(run_steps, **vars(pendulum)).rows(theta, times, 2)
