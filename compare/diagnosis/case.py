@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -140,18 +141,19 @@ class Explanation:
 
     def lines(self) -> Iterator[str]:
         """Yield what is known, line by line, for people: what is so, and below it what to do."""
-        for convention in self.conventions:
+        for convention, following in zip_longest(self.conventions, self.conventions[1:]):
             yield f"Your file {convention.text}."
-            yield from _advised(convention)
+            yield from _advised(convention, following)
         listed = self.model is not None or len(self.causes) > 1
         if self.model is not None:
             exact = f"As that model it is exact to {self.model.exact_to_m:.2g} m"
             yield f"{exact}; against the full Lagrangian it is {self.model.costs_m:.3g} m off:"
         elif listed:
             yield f"{BEGIN} (largest effect first)"
-        for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
+        causes = sorted(self.causes, key=lambda cause: -cause.size_m)
+        for cause, following in zip_longest(causes, causes[1:]):
             yield f"{'-' if listed else BEGIN} {cause.text}: off by {cause.size_m:.3g} m"
-            yield from _advised(cause)
+            yield from _advised(cause, following)
         if any(cause.stage == AS_IF for cause in self.causes):
             yield 'Where it says "moves like", the cause may be another number, a clock, a step or another term.'
         if self.slip:
@@ -188,11 +190,16 @@ class Explanation:
         yield f"With {these} corrected{left_out}, the error is {remaining}{beyond}."
 
 
-def _advised(part: Deviation) -> Iterator[str]:
-    """Yield what to do about a convention or a cause that is certain."""
-    text = "" if part.stage in (AS_IF, EITHER) else advice_on(part.id)
-    if text:
+def _advised(part: Deviation, following: Deviation | None) -> Iterator[str]:
+    """Yield what to do about a convention or a cause, unless the following one has the same advice."""
+    text = _advice(part)
+    if text and (following is None or text != _advice(following)):
         yield f"  → {text}"
+
+
+def _advice(part: Deviation) -> str:
+    """Return what to do about a convention or a cause that is certain; "" if there is nothing to do."""
+    return "" if part.stage in (AS_IF, EITHER) else advice_on(part.id)
 
 
 @dataclass(frozen=True)

@@ -164,21 +164,26 @@ class Cause:
     def sentence(self, value: float, uncertainty: float, right: Program) -> str:
         """Return the text with a fitted number to the digits that are known, beside what a right program has."""
         if self.free == "pace":
-            factor, _ = shortest_decimal(1 / value, uncertainty / value**2)
-            number = f"{factor:.{PRINTED_DIGITS}g}"
+            number = _printed(1 / value, uncertainty / value**2, 1.0)
         elif self.free == "rate":
-            factor, _ = shortest_decimal(value / right.rate, uncertainty / abs(right.rate))
-            number = f"{factor:.{PRINTED_DIGITS}g}"
+            number = _printed(value / right.rate, uncertainty / abs(right.rate), 1.0)
         elif self.free == "step":
             number = f"{value:.3g} s"
         elif self.free == "late":
-            decimal, _ = shortest_decimal(abs(value), uncertainty)
-            number = f"{decimal:.6g} s {'late' if value > 0 else 'early'}"
+            side = "early" if value < 0 else "late"
+            number = f"{_printed(abs(value), uncertainty, 0.0)} s {side}"
         else:
-            decimal, _ = shortest_decimal(value, uncertainty)
-            scene = f"{getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
-            number = f"{decimal:.{PRINTED_DIGITS}g} and not {scene}"
+            scene = float(getattr(right, self.free))
+            number = f"{_printed(value, uncertainty, scene)} and not {scene:.10g}"
+            number += UNITS.get(self.free, "")
         return self.text.format(value=number)
+
+
+def _printed(value: float, uncertainty: float, scene: float) -> str:
+    """Return a number to the digits that are known, and at least to those that distinguish it from the scene's."""
+    nearer = abs(value - scene) / 2
+    decimal, _ = shortest_decimal(value, min(uncertainty, nearer))
+    return f"{decimal:.{PRINTED_DIGITS}g}"
 
 
 def shortest_decimal(value: float, doubt: float) -> tuple[float, int]:

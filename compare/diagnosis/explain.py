@@ -98,7 +98,8 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
 def _next_step(times: Array, frequency: float) -> str:
     """Return what to do where no cause is known."""
     most_s = 2 * math.pi / frequency / ROWS_A_SWING if frequency else math.inf
-    if len(times) > 1 and float(np.median(np.diff(times))) > most_s:
+    # of rows that are nearly as dense, others would show little more
+    if len(times) > 1 and float(np.median(np.diff(times))) >= 2 * most_s:
         return f"print at least {ROWS_A_SWING} rows a swing, one every {most_s:.2g} s, and score them again."
     return "let `--run 'PROGRAM {x0} {y0} … {setting}' --experiments` run your program with other numbers and steps."
 

@@ -14,7 +14,7 @@ from .thresholds import NEEDED, OTHER_STEP
 NOT_SOUGHT = "is not explained: its cause was not looked for"
 ROUNDING = "is no more than the rounding of the printed numbers"
 _NOT_CERTAIN = "is not explained: its cause is not certain"
-_UNKNOWN = "is no known mistake"
+_UNKNOWN = "is explained by nothing that was tried"
 
 _SAME = 1e-9  # relative difference of two inputs that count as one
 _STEP = "step"

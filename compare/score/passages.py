@@ -66,7 +66,7 @@ class PassageScore:
 
     def lines(self) -> Iterator[str]:
         """Yield the lines for people, the verdict first."""
-        span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} of {self.scene.run.t_end} s"
+        span = f"t = {self.times[0]:.10g} to {self.times[-1]:.10g} of {self.scene.run.t_end} s"
         passages = f"{counted(len(self.times), 'passage')} of {self.section}"
         yield f"{self.name} {self.verdict} with {self.scene.id} ({passages}, {span})"
         yield from self.errors.lines(self.allowed_m, "passages", "as a distance")

@@ -373,8 +373,8 @@ def test_a_change_is_no_known_mistake_if_nothing_is_known() -> None:
         causes = [cause] if cause_id else []
         return Version({"conventions": [], "causes": causes, "slip": None, "corrected": None}, 1e-3)
 
-    assert unexplained(version(""), version("")) == "is no known mistake"
-    assert unexplained(version("a"), version("a")) == "is no known mistake"
+    assert unexplained(version(""), version("")) == "is explained by nothing that was tried"
+    assert unexplained(version("a"), version("a")) == "is explained by nothing that was tried"
     for doubtful in ("as_if.a", "a|b"):
         assert "not certain" in unexplained(version(doubtful), version(""))
         assert "not certain" in unexplained(version(""), version(doubtful))
