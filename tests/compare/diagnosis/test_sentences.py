@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compare.candidates.candidate import Candidate, Deviation
+from compare.candidates.candidate import Deviation
 from compare.diagnosis.case import Explanation
 from compare.diagnosis.causes import fitted_number, shortest_decimal
 from compare.diagnosis.explain import KnownScene, explain
-from compare.score.judge import judge
 from reference import load_scene, trajectory
 
 MUSEUM = load_scene("museum", ["inputs=binary64", "run.transits=false"])
@@ -66,8 +65,10 @@ def test_denser_rows_are_asked_for_where_there_are_half_as_many(
     assert found.next_step.startswith("print at least 20 rows a swing") is denser
 
 
-def test_the_head_of_a_score_has_all_digits_of_its_times() -> None:
+def test_the_head_of_a_score_has_all_digits_of_its_times(foucault, tmp_path) -> None:
     times = 0.005 + np.arange(0, 1201, 400.0)
-    x, y, z = trajectory(MUSEUM, [0.0, *times])[1:, :3].T
-    found = judge(Candidate.of("mine", times, {"x": x, "y": y, "z": z}), MUSEUM)
-    assert "t = 0.005 to 1200.005 of 3600 s" in next(iter(found.lines()))
+    positions = trajectory(MUSEUM, [0.0, *times])[1:, :3]
+    path = tmp_path / "mine.csv"
+    rows = np.column_stack([times, positions])
+    np.savetxt(path, rows, delimiter=",", header="t,x,y,z", comments="", fmt="%.17g")
+    assert "t = 0.005 to 1200.005 of 3600 s" in foucault("score", "museum", path)[1]
