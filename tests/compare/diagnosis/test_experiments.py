@@ -264,6 +264,32 @@ def test_a_mistake_that_nobody_knows_has_no_name(
     assert document["causes"] == [] and document["diagnosis"] is None
 
 
+STUCK = """
+import subprocess, sys
+lines = subprocess.run(sys.argv[1:], capture_output=True, text=True).stdout.split()
+rows = [line.split(",")[:3] for line in lines]
+for row in rows[102:]:
+    row[1] = rows[101][1]
+print("\\n".join(map(",".join, rows)))
+"""
+
+
+def test_steps_of_which_only_the_first_rows_are_right_are_not_measured(
+    foucault: Run, mistaken: Path, tmp_path: Path
+) -> None:
+    """A Runge-Kutta method in 30,000 steps, and an x that is stuck from the 20,000th on, in every run."""
+    source = tmp_path / "stuck.py"
+    source.write_text(STUCK)
+    run = f"{sys.executable} {source} {mistaken} reading=2 x0={{x0}} y0={{y0}} l={{length}} lat={{latitude}}"
+    run += " g={gravity} rate={rotation_rate} tend={t_end} out=10 h={setting}"
+    words = ["--t-end", "1500", "--repeats", "0", "--setting", "0.05"]
+    document = json.loads(
+        foucault("score", "museum", *words, "--run", run, "--experiments", "--json")[1]
+    )
+    assert document["experiments"]["runs"] and document["experiments"]["measured"] == []
+    assert document["causes"] == []
+
+
 LINEAR = """
 import math, sys
 x, y, l, latitude, g, rate, end, h = map(float, sys.argv[1:])
