@@ -107,6 +107,11 @@ def hedged(part: Deviation) -> Deviation:
     return replace(part, id=f"{AS_IF}.{part.id}", stage=AS_IF, text=text)
 
 
+def _is_in_phase(cause: Deviation) -> bool:
+    """Return whether a cause changes the phase as a clock does."""
+    return cause.id in PHASE or cause.id.startswith("gravity_")
+
+
 def unnamed_step_error(size_m: float, stage: str = "integrator") -> Deviation:
     """Return the cause that an integrator has an error whose method is not known."""
     cause = Deviation(_UNNAMED_STEP.ids, _UNNAMED_STEP.text, size_m, "integrator")
@@ -316,6 +321,7 @@ class _AmongRivals:
 
         - The factor of a clock may be any number, but not beside other arbitrary numbers, which absorb its residual.
         - A factor of the rotation rate does not count as round beside arbitrary inputs: a clock has the same effect.
+        - Beside an arbitrary clock, which absorbs a part, no g or length counts as round, unless nothing is left.
         - The length of a step may be any number, but not beside arbitrary inputs that change the phase as a step does.
         """
         if cause.stage == "clock":
@@ -324,6 +330,8 @@ class _AmongRivals:
             return shows_steps(self.best)
         if cause.id == "rate_factor":
             return not self.best.arbitrary_inputs
+        if "clock" in self._arbitrary_ids and _is_in_phase(cause):
+            return self.best.is_exact
         return cause.id not in self._arbitrary_ids
 
     def _in_whole_steps(self, cause: Deviation) -> Deviation:

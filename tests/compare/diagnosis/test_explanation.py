@@ -270,6 +270,8 @@ def test_what_was_once_not_found(mistaken: Path, seed: int, number: int, words: 
         pytest.param(81001, 94, marks=LONG),
         (81001, 270),
         (12582, 141),
+        # a named g beside an arbitrary clock, latitude and rate
+        (83855, 231),
         # a rate that is rounded, without which the file agrees as well
         pytest.param(84004, 152, marks=LONG),
         # beside a step error of no name, another g looks like a height of the site or a rotation rate
