@@ -228,8 +228,7 @@ def sentences(case: FileCase, reading: CauseReading) -> Iterator[tuple[str, str]
     for cause in reading.causes:
         text = cause.text
         if cause.free:
-            # digits that move the bob by less than what needs a cause say nothing
-            uncertainty = reading.reader.uncertainty(reading, cause, case.floor)
+            uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
             text = cause.sentence(reading.value(cause), uncertainty, case.right)
         if text:  # which a second number of one cause does not have
             yield cause.id, text
@@ -303,9 +302,7 @@ class _CausePart:
         value = reading.value(cause)
         shift = value - float(getattr(case.right, cause.free))
         uncertainty = reading.reader.uncertainty(reading, cause, case.resolution)
-        # digits that move the bob by less than what needs a cause say nothing
-        text_uncertainty = reading.reader.uncertainty(reading, cause, case.floor)
-        text = cause.sentence(value, text_uncertainty, case.right)
+        text = cause.sentence(value, uncertainty, case.right)
         return Deviation(cause.id, text, size_m, cause.stage, value, shift, uncertainty)
 
 
