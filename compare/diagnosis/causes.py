@@ -109,7 +109,7 @@ _SAME_MOTION = (
     # rows that are late show a bob that moves already
     ("late", "release.vx release.vy"),
 )
-# causes that are a simpler one, and another vertical centrifugal force, which is the motion of another g
+# causes that differ from a simpler one by the vertical centrifugal force alone: that is the motion of another g
 VERTICAL = ("no_tilt", "no_lift", "lift_sign", "lift_double")
 # causes that may be the same motion as a simpler one
 _SIMPLER = (

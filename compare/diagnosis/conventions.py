@@ -805,9 +805,10 @@ def _off_in_first_rows(
     The shift is known to a part of a row at first.
     """
     rows = passage.rows
-    times = rows.times[:count] - passage.parts * spacing_s / _PARTS
+    times = rows.times - passage.parts * spacing_s / _PARTS
     kept = times >= 0
-    times, plane = times[kept], rows.plane[:count][kept]
+    times = times[kept][:count]
+    plane = rows.plane[kept][:count]
     for _ in range(_NEWTON):
         states = truth(times)
         off, speed = plane - states[:, :2], states[:, 3:5]

@@ -260,7 +260,7 @@ def _changed(deviation: _Document, when: str, others: Sequence[_Document]) -> st
 
 
 def _shorter_form(deviation: _Document, others: Sequence[_Document]) -> str:
-    """Return the text of the deviation that this one extends; empty if there is none."""
+    """Return the text of the deviation that this one adds to, or "" if it adds to none."""
     shorter = (str(other["text"]) for other in others if _says_as_much(deviation, other))
     return next(shorter, "")
 

@@ -57,8 +57,8 @@ _RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
 # The rows up to there are read first, and all rows only if some steps explain these.
 FIRST_STEPS = 15_000
 _FEWEST = 30  # rows that determine a motion; up to twice as many steps are run to reach them
-# A step takes about a microsecond, and a quarter of that in long leaps. A day in Paris in the shortest
-# steps that are tried is 8 million. Of a longer file the end would not be looked at: none is explained.
+# A step takes about a microsecond, and a quarter of that in long leaps. A day in Paris takes 8 million
+# of the shortest steps that are tried. Longer files are not explained, because their last rows would not be checked.
 _MOST_STEPS = 10_000_000
 _TRIED = 24  # numbers of steps that are run at a time
 # steps that are compiled as one, by the number of steps from which compiling them pays
@@ -264,7 +264,7 @@ class _SteppedMotion:
 
 @dataclass(frozen=True)
 class _SteppedReading:
-    """What rows show beside the effect of some steps.
+    """What the rows show once the effect of the steps is taken out.
 
     Attributes:
         case: the rows.

@@ -91,7 +91,7 @@ class Laboratory:
         """
         files = f"the {len(self._runs)} files"
         if not explanations:
-            return f"Nothing that was tried makes {files}: of the first one alone is said what it moves like."
+            return f"Nothing that was tried explains {files}: what follows is about the first one alone."
         if len(explanations) == 1:
             cause = "one explanation makes" if known else "an integrator is at fault, say"
             return f"Measured: {cause} {files}."
