@@ -15,8 +15,8 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ..observed.least_squares import by_differences, gauss_newton
-from .case import FileCase
+from ..observed.least_squares import by_differences, gauss_newton, solved
+from .case import FileCase, rms
 from .phasors import TITLES, Phasors, fit_phasors
 from .programs import SphericalPendulum, phasors_of
 from .thresholds import NEEDED
@@ -29,12 +29,16 @@ _ORDERS = ("vx vy xy", "vy vx xy", "xy vx vy", "xy vy vx")
 _VERLET = "verlet"
 # half of the change of the velocities, the positions, the other half
 _LEAPFROG = "leapfrog"
-# v of both axes at once, and everything at once: named methods, tried here with a factor only
+# v of both axes at once, everything at once, and by the slopes of Runge-Kutta: named methods, tried here with a
+# factor only
 _NAMED = {
     "v xy": "semi_implicit_euler",
     "xy v": "semi_implicit_euler_drift",
     "all": "explicit_euler",
+    "rk2": "rk2",
+    "rk4": "rk4",
 }
+_RUNGE_KUTTA_ORDERS = {"rk2": 2, "rk4": 4}
 # with a factor on both velocities after each step in place of the drag
 _DAMPED = tuple(f"{order} factor" for order in (*_ORDERS, _VERLET, _LEAPFROG, *_NAMED))
 _EXPLICIT = "both accelerations of the velocity before them,"
@@ -54,7 +58,7 @@ _TRIED = 10  # numbers of steps that are tried at a time
 _NEWTON = 8  # Gauss-Newton steps of a fit
 _GAIN = 0.9  # of the residual before it: a step with a larger one ends a fit
 _LEAST = 24  # rows
-_NEAR = 1e-3  # of the amplitude: the largest residual of two phasors
+_DECAYS = 1e-3  # part by which the amplitude changes: less may be an integrator's
 # indices of theta that are fitted with a number of steps: turn, pull, drag and place of the
 # release; and its velocity, if it is not the scene's
 _FITTED = (2, 3, 4, 5, 6, 7, 8)
@@ -86,6 +90,8 @@ def _matrix_without_factor(order: str, accelerations: Array, h: float) -> Array:
         return _leapfrog(accelerations, h)
 
     velocities = np.eye(5)[2:4]
+    if order in _RUNGE_KUTTA_ORDERS:
+        return _runge_kutta(_RUNGE_KUTTA_ORDERS[order], np.vstack([velocities, accelerations]), h)
     # by statement, the rows of the state that it changes, and the rates by which it does
     statements = {
         "vx": ([2], accelerations[:1]),
@@ -118,6 +124,20 @@ def _leapfrog(accelerations: Array, h: float) -> Array:
     drift = np.eye(5)
     drift[:2] += h * np.eye(5)[2:4]
     return np.asarray(half_kick @ drift @ half_kick)
+
+
+def _runge_kutta(order: int, rates: Array, h: float) -> Array:
+    """Return a step of a Runge-Kutta method with as many stages as its order, up to 4.
+
+    On a linear model it is the Taylor series of the exact step, up to that order.
+    """
+    term = np.eye(5)
+    matrix = np.eye(5)
+    slopes = np.vstack([rates, np.zeros(5)])
+    for power in range(1, order + 1):
+        term = h / power * slopes @ term
+        matrix += term
+    return matrix
 
 
 @dataclass(frozen=True)
@@ -186,7 +206,7 @@ def likely_loops(case: FileCase) -> list[LinearSteps]:
     if phasors is None:
         return []
     orders = [*_ORDERS, _VERLET, _LEAPFROG]
-    if abs(phasors.drag) * float(case.rows.times[-1]) > _NEAR:
+    if abs(phasors.drag) * float(case.rows.times[-1]) > _DECAYS:
         orders += _DAMPED
     for free in (_FITTED, _PUSHED):
         search = _Search(case, phasors, free)
@@ -199,9 +219,9 @@ def likely_loops(case: FileCase) -> list[LinearSteps]:
 
 
 def _phasors_of_even_rows(case: FileCase) -> Phasors | None:
-    """Return the phasors that make the rows nearly.
+    """Return the phasors that make the rows of a linear motion roughly.
 
-    None if there are none, or the rows are not evenly spaced from the release on.
+    None if there are none, the motion is not linear, or the rows are not evenly spaced from the release on.
     """
     times = case.rows.times
     if len(times) < _LEAST or times[0] != 0 or not case.frequency:
@@ -209,11 +229,27 @@ def _phasors_of_even_rows(case: FileCase) -> Phasors | None:
     spacings = times / float(times[1])
     if not np.abs(spacings - np.round(spacings)).max() < 1e-6:
         return None
+    if not _is_linear(case):
+        return None
     plane = case.rows.plane @ np.array([1, 1j])
     fit = fit_phasors(times, plane, case.frequency)
-    if fit is None or fit.residual > _NEAR * float(np.abs(plane).max()):
-        return None
-    return fit.phasors
+    return None if fit is None else fit.phasors
+
+
+def _is_linear(case: FileCase) -> bool:
+    """Return whether x and y of each row are linear in those of the two rows before, as in every linear motion.
+
+    Rows after a gap are left out.
+    """
+    spacings = np.round(np.diff(case.rows.times) / float(case.rows.times[1]))
+    (starts,) = np.nonzero((spacings[:-1] == 1) & (spacings[1:] == 1))
+    if len(starts) < _LEAST:
+        return False
+    plane = case.rows.plane
+    before = np.column_stack([plane[starts], plane[starts + 1], np.ones(len(starts))])
+    after = plane[starts + 2]
+    residuals = after - before @ solved(before, after)
+    return rms(residuals) <= NEEDED * case.resolution
 
 
 @dataclass(frozen=True)

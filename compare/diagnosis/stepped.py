@@ -34,7 +34,6 @@ from .loops import LinearSteps, likely_loops
 from .phasors import TITLES
 from .programs import Program, SphericalPendulum
 from .readings import CauseReading, adjusted
-from .thresholds import NEEDED
 
 _TITLES = TITLES | {"heun": TITLES["rk2"]}
 # ωh: the shortest step that is tried
@@ -209,14 +208,20 @@ def of_steps(case: FileCase, reading: CauseReading | None) -> Explanation | None
 
 
 def of_loops(case: FileCase) -> Explanation | None:
-    """Return the explanation of rows that a loop of statements made, one after the other; None if none did."""
+    """Return the explanation of rows that a loop of statements made, one after the other; None if none did.
+
+    Several loops may make the same motion, each with other numbers: those that need the fewest causes are told.
+    """
     flat = case.in_the_plane()
+    row_count = len(flat.rows.times)
     loops = likely_loops(flat)
-    for loop in loops:
-        explanation = _explanation_with(flat, loop, len(flat.rows.times))
-        if explanation is not None:
-            return with_alternative_steps(explanation, [step_cause(one) for one in loops])
-    return None
+    explained = [(loop, _explanation_with(flat, loop, row_count)) for loop in loops]
+    possible = [(loop, found) for loop, found in explained if found is not None]
+    if not possible:
+        return None
+    _, best = min(possible, key=lambda pair: pair[1].price)
+    rivals = [step_cause(loop) for loop, found in possible if found.price == best.price]
+    return with_alternative_steps(best, rivals)
 
 
 @dataclass(frozen=True)
@@ -301,12 +306,7 @@ class _SteppedReading:
     def explains(self) -> bool:
         """Whether the steps make the rows, with the causes of the best hypothesis."""
         residuals = self.motion.residuals(self.case)
-        if not self.motion.is_near(self.case) or not largest(residuals) <= self.case.enough:
-            return False
-        # the steps of a linear model are exact: a residual beyond rounding refutes them; and arbitrary
-        # numbers absorb the residuals of wrong steps
-        most = 1.0 if self.best.arbitrary else NEEDED
-        return self.motion.steps.kind != "linear" or rms(residuals) <= most * self.case.resolution
+        return self.motion.is_near(self.case) and largest(residuals) <= self.case.enough
 
     def of_all(self, case: FileCase) -> _SteppedReading | None:
         """Return the reading of all rows of a case, of which this one has read the first.
@@ -348,7 +348,8 @@ class _SteppedReading:
             step = hedged(step)
             causes = tuple(hedged(cause) if cause.id in PHASE else cause for cause in causes)
         causes = (*causes, step)
-        return replace(case.explanation(causes, residuals, len(causes)), reading=best.reading)
+        found = case.explanation(causes, residuals, explanation.price + 1)
+        return replace(found, reading=best.reading)
 
 
 def _explanation_with(
@@ -364,6 +365,9 @@ def _explanation_with(
         return None
     motion = _SteppedMotion.of(steps, fit.theta, first.rows.times)
     if not motion.is_near(first):
+        return None
+    # the steps of a linear model are exact: a residual beyond rounding refutes them, whatever numbers are fitted
+    if steps.kind == "linear" and rms(motion.residuals(first)) > case.resolution:
         return None
     reading = _SteppedReading.of(first, motion)
     if reading is None or not reading.explains:

@@ -43,7 +43,9 @@ def test_the_order_of_the_statements_is_named_and_no_other(
         assert found.words >= loop.needed, list(found.explanation.lines())
 
 
-@pytest.mark.parametrize("name", ["kick_drift", "explicit", "drift_kick"])
+@pytest.mark.parametrize(
+    "name", ["kick_drift", "explicit", "drift_kick", "axis_by_axis", "verlet", "midpoint"]
+)
 def test_a_factor_on_the_velocities_is_known_beside_a_method(name: str, tmp_path: Path) -> None:
     """`vx *= 0.9999` after each step; two orders of statements may make the same rows."""
     draw = random.Random(f"damped {name}")
@@ -56,6 +58,23 @@ def test_a_factor_on_the_velocities_is_known_beside_a_method(name: str, tmp_path
     # the factor changes the phase beside explicit Euler, which takes an arbitrary clock: then its step is not certain
     needed = loop.needed - ({"integrator_explicit_euler"} if name == "explicit" else set())
     assert found.words | found.alternatives >= needed, list(found.explanation.lines())
+
+
+@pytest.mark.parametrize("name", ["in_turn", "kick_drift"])
+def test_a_loop_is_known_where_the_earth_turns_fast(name: str, tmp_path: Path) -> None:
+    """Ω = 0.01 rad/s: what one axis does to the other grows for minutes, and no two phasors make the rows."""
+    draw = random.Random(f"fast {name}")
+    loops = (drawn_loop(draw, "Python") for _ in range(1000))
+    loop = next(
+        one
+        for one in loops
+        if one.name == name and "damped_steps" not in one.true
+        if float(one.scene.exact.rotation_rate) == 0.01 and one.scene.exact.t_end > 250
+    )
+    times, columns = loop.rows(tmp_path)
+    x, y = (float(place) for place in loop.scene.exact.position[:2])
+    found = told(loop.scene, times, columns, 1e-6 * math.hypot(x, y))
+    assert loop.needed <= found.words <= loop.true | SAID, list(found.explanation.lines())
 
 
 def test_a_loop_that_a_named_method_explains_nearly_as_well_is_not_called_that_method(
